@@ -1,0 +1,12 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace cloth {
+
+using Vec3 = Eigen::Vector3d;
+using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;  ///< (N x 3)
+using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3, Eigen::RowMajor>;      ///< (M x 3)
+using VectorX = Eigen::VectorXd;
+
+}  // namespace cloth

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+
+#include "collision/proximity.h"
+#include "data/boundary.h"
+#include "data/cloth_state.h"
+
+namespace cloth {
+
+/// Constants of the incremental potential that are not the fabric's.
+struct PotentialSettings {
+    double contact_distance = 4e-3;  ///< cloth is pushed away below this distance (m), 1e-3 to 1e-2
+    double contact_weight = 5e5;     ///< w in w max(0, eps - d)^3 (N/m^2), 1e3 to 1e6
+    double friction_scale = 1.0;     ///< scales the obstacles' friction coefficients; 0: no friction
+    double friction_distance = 6e-3; ///< friction acts on vertices closer than this (m)
+    double friction_slip = 1e-4;     ///< slip (m) below which friction is smoothed
+};
+
+/// The parts of the incremental potential (J).
+struct EnergyTerms {
+    double strain = 0, bending = 0, gravity = 0, inertia = 0, contact = 0, friction = 0;
+    double total() const { return strain + bending + gravity + inertia + contact + friction; }
+};
+
+/// E(x) of one backward-Euler step; its minimum is the garment's position at t + dt.
+///
+///     IncrementalPotential potential(garment, settings);
+///     potential.begin_step(state, boundary, contacts, dt);
+///     double energy = potential.value_gradient(x, gradient);
+///
+/// Pinned vertices are variables like all others here; solvers hold them at their targets and the
+/// gradient and Hessian rows of pinned vertices are zero (Hessian diagonal one).
+class IncrementalPotential {
+   public:
+    explicit IncrementalPotential(const Garment& garment, PotentialSettings settings = {});
+
+    /// Fixes everything that does not depend on the unknown x. `contacts` are the nearest points of
+    /// state.x at t. External accelerations and gravity come from `boundary`.
+    void begin_step(const ClothState& state, const Boundary& boundary,
+                    const SurfaceContacts& contacts, double dt);
+
+    EnergyTerms terms(const Points& x) const;
+    double value(const Points& x) const;
+    double value_gradient(const Points& x, Points& gradient) const;
+    /// Hessian of E with each element's block projected to positive semi-definite (3|V| x 3|V|).
+    void hessian(const Points& x, Eigen::SparseMatrix<double>& hessian) const;
+    /// Gradient of strain + bending only (|V| x 3, N): the force features' ingredient.
+    void elastic_gradient(const Points& x, Points& gradient) const;
+
+    /// Norm of inertia's and gravity's forces at x_t over the free vertices (N): residual's scale.
+    double force_scale() const { return m_force_scale; }
+
+    const Garment& garment() const { return *m_garment; }
+    const PotentialSettings& settings() const { return m_settings; }
+    double dt() const { return m_dt; }
+    const SurfaceContacts& contacts() const { return m_contacts; }
+    const Points& inertial_target() const { return m_inertial_target; }  ///< x_t + dt v_t
+
+    void set_contact_weight(double weight) { m_settings.contact_weight = weight; }
+
+   private:
+    const Garment* m_garment;
+    PotentialSettings m_settings;
+    double m_dt = 0.0;
+    double m_force_scale = 0.0;
+    Points m_x_t;
+    Points m_inertial_target;
+    Points m_acceleration;  ///< |V| x 3: gravity and external accelerations
+    SurfaceContacts m_contacts;
+    std::vector<double> m_friction;  ///< |V|: mu m g s, lagged at x_t (N)
+};
+
+}  // namespace cloth

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+
+#include "data/boundary.h"
+#include "data/cloth_state.h"
+
+namespace cloth {
+
+/// Wall time of one step by stage (ms).
+struct StageTimes {
+    double proximity = 0.0;  ///< nearest points on the obstacles
+    double features = 0.0;   ///< building the network's input
+    double solve = 0.0;      ///< network evaluation or solver iterations
+    double contact = 0.0;    ///< projection and resolution of contacts
+    double total() const { return proximity + features + solve + contact; }
+};
+
+/// What happened inside one step; the per-frame path reports, it does not throw.
+struct StepReport {
+    int iterations = 0;            ///< solver or refinement iterations spent
+    double residual = 0.0;         ///< |gradient| of the incremental potential after the step, over
+                                   ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
+    bool converged = false;        ///< the stepper's own tolerance was met
+    double max_penetration = 0.0;  ///< deepest vertex inside an obstacle after the step (m)
+    bool finite = true;            ///< false: the state was left as it was before the step
+    StageTimes times;
+};
+
+/// Advances one garment by one time step. Every solver, physical or learned, is a Stepper.
+///
+///     QuasiNewtonStepper stepper(garment, {});
+///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
+///
+/// Contract (tests/gnn/stepper_contract_test.cpp): pins land on their targets, equal inputs give
+/// equal bits for any thread count, and a failed step leaves `state` untouched.
+class Stepper {
+   public:
+    virtual ~Stepper() = default;
+
+    virtual std::string name() const = 0;
+
+    /// Time step this stepper is made for (s); 0 if it accepts any.
+    virtual double fixed_dt() const { return 0.0; }
+
+    /// @param boundary  obstacle surfaces at t and t+dt, pin targets at t+dt, gravity (m/s^2)
+    /// @param dt        time step (s)
+    /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
+    virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
+};
+
+}  // namespace cloth
