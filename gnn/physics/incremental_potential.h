@@ -5,6 +5,12 @@
 #include "collision/proximity.h"
 #include "data/boundary.h"
 #include "data/cloth_state.h"
+#include "gnn/physics/bending.h"
+#include "gnn/physics/contact.h"
+#include "gnn/physics/friction.h"
+#include "gnn/physics/gravity.h"
+#include "gnn/physics/inertia.h"
+#include "gnn/physics/strain.h"
 
 namespace cloth {
 
@@ -12,9 +18,12 @@ namespace cloth {
 struct PotentialSettings {
     double contact_distance = 4e-3;  ///< cloth is pushed away below this distance (m), 1e-3 to 1e-2
     double contact_weight = 5e5;     ///< w in w max(0, eps - d)^3 (N/m^2), 1e3 to 1e6
-    double friction_scale = 1.0;     ///< scales the obstacles' friction coefficients; 0: no friction
-    double friction_distance = 6e-3; ///< friction acts on vertices closer than this (m)
-    double friction_slip = 1e-4;     ///< slip (m) below which friction is smoothed
+    double friction_scale = 1.0;  ///< scales the obstacles' friction coefficients; 0: no friction
+    double friction_distance = 6e-3;  ///< friction acts on vertices closer than this (m)
+    double friction_slip = 1e-4;      ///< slip (m) below which friction is smoothed
+    /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
+    /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
+    double friction_limit = 10.0;
 };
 
 /// The parts of the incremental potential (J).
@@ -31,12 +40,19 @@ struct EnergyTerms {
 ///
 /// Pinned vertices are variables like all others here; solvers hold them at their targets and the
 /// gradient and Hessian rows of pinned vertices are zero (Hessian diagonal one).
+///
+/// Evaluations are const, allocate nothing once their outputs have the right size, never throw and
+/// run on the calling thread, so several threads may evaluate one potential.
 class IncrementalPotential {
-   public:
+ public:
+    /// Keeps a reference to `garment`.
+    /// @throws ArgumentError if a setting is negative or not finite
     explicit IncrementalPotential(const Garment& garment, PotentialSettings settings = {});
 
     /// Fixes everything that does not depend on the unknown x. `contacts` are the nearest points of
-    /// state.x at t. External accelerations and gravity come from `boundary`.
+    /// state.x at t, or empty where there is no obstacle. External accelerations and gravity come
+    /// from `boundary`.
+    /// @throws ArgumentError if an array's size does not fit the garment or dt is not positive
     void begin_step(const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt);
 
@@ -55,20 +71,25 @@ class IncrementalPotential {
     const PotentialSettings& settings() const { return m_settings; }
     double dt() const { return m_dt; }
     const SurfaceContacts& contacts() const { return m_contacts; }
-    const Points& inertial_target() const { return m_inertial_target; }  ///< x_t + dt v_t
+    const Points& inertial_target() const { return m_inertia.target(); }  ///< x_t + dt v_t
 
     void set_contact_weight(double weight) { m_settings.contact_weight = weight; }
 
-   private:
+ private:
+    void mask_pins(Points& gradient) const;
+    double norm_of_forces_at(const ClothState& state) const;
+
     const Garment* m_garment;
     PotentialSettings m_settings;
     double m_dt = 0.0;
     double m_force_scale = 0.0;
-    Points m_x_t;
-    Points m_inertial_target;
-    Points m_acceleration;  ///< |V| x 3: gravity and external accelerations
     SurfaceContacts m_contacts;
-    std::vector<double> m_friction;  ///< |V|: mu m g s, lagged at x_t (N)
+    StrainEnergy m_strain;
+    BendingEnergy m_bending;
+    GravityEnergy m_gravity;
+    InertiaEnergy m_inertia;
+    ContactEnergy m_contact;
+    FrictionEnergy m_friction;
 };
 
 }  // namespace cloth

@@ -1,0 +1,99 @@
+#include "gnn/physics/bending.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "gnn/physics/angle.h"
+#include "gnn/physics/element_block.h"
+
+namespace cloth {
+
+namespace {
+
+using HingeBlock = ElementBlock<4>;
+
+/// Constants of the hinges of one block.
+struct HingeConstants {
+    const double *stiffness, *rest_angle;
+    double min_normal, min_edge;
+};
+
+/// Energies of `count` hinges; with_gradient: their gradients replace the positions.
+/// n0 = e x a and n1 = b x e are the area vectors of the two faces; (n0 x n1) . e = -|e|^2 (n0 .
+/// b).
+template <bool with_gradient>
+void evaluate(HingeBlock& block, const HingeConstants& constants, int count) {
+    auto& x = block.x;
+    for (int h = 0; h < count; ++h) {
+        const double ex = x[3][h] - x[0][h], ey = x[4][h] - x[1][h], ez = x[5][h] - x[2][h];
+        const double ax = x[6][h] - x[0][h], ay = x[7][h] - x[1][h], az = x[8][h] - x[2][h];
+        const double bx = x[9][h] - x[0][h], by = x[10][h] - x[1][h], bz = x[11][h] - x[2][h];
+        const double mx = ey * az - ez * ay, my = ez * ax - ex * az, mz = ex * ay - ey * ax;
+        const double nx = by * ez - bz * ey, ny = bz * ex - bx * ez, nz = bx * ey - by * ex;
+        const double squared = std::max(ex * ex + ey * ey + ez * ez, constants.min_edge);
+        const double length = std::sqrt(squared);
+        const double sine = -length * (mx * bx + my * by + mz * bz);
+        const double cosine = mx * nx + my * ny + mz * nz;
+        const double angle = wrap_angle(fast_atan2(sine, cosine) - constants.rest_angle[h]);
+        const double moment = constants.stiffness[h] * angle;
+        block.energy[h] = 0.5 * moment * angle;
+        if (with_gradient) {
+            const double scale = moment * length;
+            const double p = scale / std::max(mx * mx + my * my + mz * mz, constants.min_normal);
+            const double q = scale / std::max(nx * nx + ny * ny + nz * nz, constants.min_normal);
+            const double u = (ax * ex + ay * ey + az * ez) / squared;
+            const double v = (bx * ex + by * ey + bz * ez) / squared;
+            const double p0 = p * (1.0 - u), q0 = q * (1.0 - v), p1 = p * u, q1 = q * v;
+            x[0][h] = p0 * mx + q0 * nx, x[1][h] = p0 * my + q0 * ny, x[2][h] = p0 * mz + q0 * nz;
+            x[3][h] = p1 * mx + q1 * nx, x[4][h] = p1 * my + q1 * ny, x[5][h] = p1 * mz + q1 * nz;
+            x[6][h] = -p * mx, x[7][h] = -p * my, x[8][h] = -p * mz;
+            x[9][h] = -q * nx, x[10][h] = -q * ny, x[11][h] = -q * nz;
+        }
+    }
+}
+
+}  // namespace
+
+BendingEnergy::BendingEnergy(const Garment& garment) : m_garment(&garment) {
+    const Points& rest = garment.rest().vertices;
+    double edge = garment.mean_edge_length(), area = garment.face_areas().mean();
+    m_min_edge = 1e-8 * edge * edge;
+    m_min_normal = 1e-8 * area * area;
+    m_stiffness.reserve(garment.hinges().size());
+    for (const Hinge& h : garment.hinges()) {
+        const Vec3 origin = rest.row(h[0]);
+        const Vec3 e = rest.row(h[1]).transpose() - origin;
+        const double doubled_areas = e.cross(rest.row(h[2]).transpose() - origin).norm() +
+                                     e.cross(rest.row(h[3]).transpose() - origin).norm();
+        m_stiffness.push_back(garment.fabric().bending * e.squaredNorm() / (2.0 * doubled_areas));
+    }
+}
+
+template <bool with_gradient>
+double BendingEnergy::accumulate(const double* x, double* gradient) const {
+    if (m_stiffness.empty()) return 0.0;
+    HingeBlock block;
+    const int* hinges = m_garment->hinges().front().data();
+    const int count = static_cast<int>(m_stiffness.size());
+    double energy = 0.0;
+    for (int first = 0; first < count; first += HingeBlock::size) {
+        const int run = std::min(HingeBlock::size, count - first);
+        const HingeConstants constants = {
+            &m_stiffness[first], &m_garment->hinge_rest_angles()[first], m_min_normal, m_min_edge};
+        block.gather(x, hinges, first, run);
+        evaluate<with_gradient>(block, constants, run);
+        if (with_gradient) block.scatter(gradient, hinges, first, run);
+        energy += block.total_energy(run);
+    }
+    return energy;
+}
+
+double BendingEnergy::value(const Points& x) const {
+    return accumulate<false>(x.data(), nullptr);
+}
+
+double BendingEnergy::add_gradient(const Points& x, Points& gradient) const {
+    return accumulate<true>(x.data(), gradient.data());
+}
+
+}  // namespace cloth

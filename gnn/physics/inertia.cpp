@@ -1,0 +1,31 @@
+#include "gnn/physics/inertia.h"
+
+namespace cloth {
+
+void compute_inertial_target(const ClothState& state, double dt, Points& target) {
+    target = state.x + dt * state.v;
+}
+
+void InertiaEnergy::begin_step(const ClothState& state, double dt) {
+    compute_inertial_target(state, dt, m_target);
+    m_stiffness = m_garment->masses() / (dt * dt);
+}
+
+double InertiaEnergy::value(const Points& x) const {
+    double energy = 0.0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        energy += 0.5 * m_stiffness[i] * (x.row(i) - m_target.row(i)).squaredNorm();
+    return energy;
+}
+
+double InertiaEnergy::add_gradient(const Points& x, Points& gradient) const {
+    double energy = 0.0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const Vec3 offset = (x.row(i) - m_target.row(i)).transpose();
+        gradient.row(i) += m_stiffness[i] * offset.transpose();
+        energy += 0.5 * m_stiffness[i] * offset.squaredNorm();
+    }
+    return energy;
+}
+
+}  // namespace cloth
