@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds, and makes the comparison of solvers on the T-shirt: a video and a
+# report. Quick the second time. Further arguments are handed to `compare`.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+demos/install_packages.sh
+echo "== configure and build"
+cmake --preset release -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
+cmake --build --preset release
+
+out="out/compare"
+echo "== T-shirt on motion 01_01: comparing solvers"
+build/release/demos/compare --garment tshirt --motion 01_01 --frames 90 \
+  --solvers bullet,bullet-fine,reference,quasi-newton-3,baseline,fast,fast+0 --out "$out" "$@"
+echo "video:  $PWD/$out/comparison.mp4"
+echo "report: $PWD/$out/report.html"

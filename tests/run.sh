@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# Installs what is needed, builds, runs every test. Quick the second time.
+#   tests/run.sh [PRESET]   preset of CMakePresets.json: ci (default), dev, asan, notorch, release
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset="${1:-ci}"
+
+case "$preset" in
+  asan | notorch) CLOTH_WITH_TORCH=0 demos/install_packages.sh ;;
+  *) demos/install_packages.sh ;;
+esac
+
+echo "== configure and build: $preset"
+cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
+cmake --build --preset "$preset"
+
+echo "== tests: $preset"
+labels=()
+if [ "$preset" = asan ]; then
+  labels=(-L unit)
+  # LibTorch-free, but third-party libraries keep caches for life
+  export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
+fi
+ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)" "${labels[@]}"
