@@ -1,0 +1,25 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+
+#include "data/types.h"
+
+namespace cloth {
+
+/// Where a position stands in a file, and its value there at full precision.
+struct FilePosition {
+    int index = 0;
+    Vec3 value = Vec3::Zero();
+};
+
+/// The positions of one list in a file by the single-precision value that assimp reads them as.
+using FilePositions = std::map<std::array<float, 3>, FilePosition>;
+
+/// The position lists of an OBJ (one, named "") or COLLADA file (one per geometry, named by its
+/// id), which assimp hands on only in the order of the faces and in single precision. Empty for
+/// formats whose vertex order assimp keeps.
+std::map<std::string, FilePositions> read_file_positions(const std::string& path);
+
+}  // namespace cloth
