@@ -1,0 +1,154 @@
+#include "gnn/model/model_config.h"
+
+#include <nlohmann/json.hpp>
+
+#include "data/errors.h"
+
+namespace cloth {
+
+using nlohmann::json;
+
+const std::vector<std::string>& ModelConfig::variant_names() {
+    static const std::vector<std::string> names = {"baseline", "sampling", "reduction", "fast"};
+    return names;
+}
+
+ModelConfig ModelConfig::variant_named(const std::string& name) {
+    ModelConfig config;
+    config.variant = name;
+    const bool sampling = name == "sampling" || name == "fast";
+    const bool reduction = name == "reduction" || name == "fast";
+    if (!sampling && !reduction && name != "baseline")
+        throw ArgumentError("variant '" + name + "'", "is not a network variant",
+                            "use baseline, sampling, reduction or fast");
+    config.sampled_edges = sampling ? 4 : 0;
+    config.world_every_step = !reduction;
+    config.body_updates = !reduction;
+    return config;
+}
+
+std::string ModelConfig::to_json() const {
+    return json{{"variant", variant},
+                {"steps", steps},
+                {"width", width},
+                {"hidden_layers", hidden_layers},
+                {"sampled_edges", sampled_edges},
+                {"world_every_step", world_every_step},
+                {"body_updates", body_updates},
+                {"message_scale", message_scale},
+                {"schedule_seed", schedule_seed},
+                {"dt", dt},
+                {"force_features", features.force_features},
+                {"world_radius", features.world_radius}}
+        .dump();
+}
+
+static void check_range(const std::string& file, const char* field, double value, double low,
+                        double high) {
+    if (!(value >= low && value <= high))
+        throw LoadError(file, std::string("configuration, field '") + field + "'",
+                        "is " + std::to_string(value) + ", outside " + std::to_string(low) +
+                            " to " + std::to_string(high),
+                        "export the network again");
+}
+
+static void check_ranges(const ModelConfig& c, const std::string& file) {
+    check_range(file, "steps", c.steps, 1, 64);
+    check_range(file, "width", c.width, 4, 512);
+    check_range(file, "hidden_layers", c.hidden_layers, 1, 4);
+    check_range(file, "sampled_edges", c.sampled_edges, 0, 32);
+    check_range(file, "message_scale", c.message_scale, 1e-3, 10);
+    check_range(file, "dt", c.dt, 1e-4, 1);
+    check_range(file, "world_radius", c.features.world_radius, 1e-3, 1);
+}
+
+ModelConfig ModelConfig::from_json(const std::string& text, const std::string& file) {
+    ModelConfig c;
+    try {
+        const json j = json::parse(text);
+        j.at("variant").get_to(c.variant);
+        j.at("steps").get_to(c.steps);
+        j.at("width").get_to(c.width);
+        j.at("hidden_layers").get_to(c.hidden_layers);
+        j.at("sampled_edges").get_to(c.sampled_edges);
+        j.at("world_every_step").get_to(c.world_every_step);
+        j.at("body_updates").get_to(c.body_updates);
+        j.at("message_scale").get_to(c.message_scale);
+        j.at("schedule_seed").get_to(c.schedule_seed);
+        j.at("dt").get_to(c.dt);
+        j.at("force_features").get_to(c.features.force_features);
+        j.at("world_radius").get_to(c.features.world_radius);
+    } catch (const json::exception& error) {
+        throw LoadError(file, "configuration", error.what(), "export the network again");
+    }
+    check_ranges(c, file);
+    return c;
+}
+
+bool operator==(const ModelConfig& a, const ModelConfig& b) {
+    return a.to_json() == b.to_json();
+}
+
+namespace {
+
+struct ShapeList {
+    std::vector<TensorShape> shapes;
+    int width, hidden_layers;
+
+    void add_mlp(const std::string& name, const std::vector<std::pair<std::string, int>>& inputs,
+                 int outputs, bool norm) {
+        for (const auto& [input, size] : inputs)
+            shapes.push_back({name + ".first." + input + ".weight", {width, size}});
+        shapes.push_back({name + ".first.bias", {width}});
+        for (int layer = 1; layer < hidden_layers; ++layer)
+            add_linear(name + ".hidden." + std::to_string(layer), width);
+        add_linear(name + ".output", outputs);
+        if (norm) {
+            shapes.push_back({name + ".norm.weight", {outputs}});
+            shapes.push_back({name + ".norm.bias", {outputs}});
+        }
+    }
+
+    void add_linear(const std::string& name, int outputs) {
+        shapes.push_back({name + ".weight", {outputs, width}});
+        shapes.push_back({name + ".bias", {outputs}});
+    }
+};
+
+std::vector<std::pair<std::string, int>> encoder_sizes(const ModelConfig& config) {
+    return {{"node", feature_count(node_layout(config.features.force_features))},
+            {"edge", feature_count(edge_layout())},
+            {"world", feature_count(world_layout())},
+            {"body", feature_count(body_layout())}};
+}
+
+}  // namespace
+
+std::vector<TensorShape> parameter_shapes(const ModelConfig& config) {
+    const int d = config.width;
+    ShapeList list{{}, d, config.hidden_layers};
+    for (const auto& [name, size] : encoder_sizes(config))
+        list.add_mlp("encoder." + name, {{"features", size}}, d, true);
+    for (int k = 0; k < config.steps; ++k) {
+        const std::string step = "step." + std::to_string(k);
+        list.add_mlp(step + ".edge", {{"receiver", d}, {"sender", d}, {"edge", d}}, d, true);
+        if (config.has_world(k))
+            list.add_mlp(step + ".world", {{"receiver", d}, {"sender", d}, {"edge", d}}, d, true);
+        std::vector<std::pair<std::string, int>> inputs = {{"node", d}, {"mesh", d}};
+        if (config.has_world(k)) inputs.push_back({"world", d});
+        list.add_mlp(step + ".node", inputs, d, true);
+    }
+    list.add_mlp("decoder", {{"node", d}}, 3, false);
+    return list.shapes;
+}
+
+std::vector<TensorShape> statistics_shapes(const ModelConfig& config) {
+    std::vector<TensorShape> shapes;
+    for (const auto& [name, size] : encoder_sizes(config)) {
+        shapes.push_back({"statistics." + name + ".mean", {size}});
+        shapes.push_back({"statistics." + name + ".deviation", {size}});
+    }
+    return shapes;
+}
+
+}  // namespace cloth

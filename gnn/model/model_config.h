@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gnn/graph/features.h"
+
+namespace cloth {
+
+/// What the network is. The four variants of the paper's ablation differ in three switches.
+///
+/// | variant   | sampled_edges | world_every_step | body_updates |
+/// |-----------|---------------|------------------|--------------|
+/// | baseline  | 0 (all)       | yes              | yes          |
+/// | sampling  | 4             | yes              | yes          |
+/// | reduction | 0 (all)       | first step only  | no           |
+/// | fast      | 4             | first step only  | no           |
+///
+/// The paper's reduction keeps one message from garment to body, in the last step. Only garment
+/// nodes are decoded, so that message never reaches the output: it is left out.
+struct ModelConfig {
+    static constexpr int format_version = 1;
+
+    std::string variant = "fast";
+    int steps = 21;                   ///< message passing steps, 1 to 64
+    int width = 128;                  ///< latent size, 4 to 512
+    int hidden_layers = 2;            ///< per multilayer perceptron, 1 to 4
+    int sampled_edges = 4;            ///< incoming edges per vertex and step; 0: all of them
+    bool world_every_step = false;    ///< body to garment messages in every step, or the first only
+    bool body_updates = false;        ///< garment to body messages change the body nodes
+    double message_scale = 0.4;       ///< factor on the sum of a vertex's messages
+    std::uint64_t schedule_seed = 1;  ///< of the sampling schedule
+    double dt = 1.0 / 30.0;           ///< time step that the network is trained for (s)
+    FeatureSettings features;
+
+    /// @throws ArgumentError if `name` is not one of variant_names()
+    static ModelConfig variant_named(const std::string& name);
+    static const std::vector<std::string>& variant_names();
+
+    bool has_world(int step) const { return world_every_step || step == 0; }
+    GraphSettings graph_settings() const { return {steps, sampled_edges, schedule_seed}; }
+
+    std::string to_json() const;
+    /// @param file  named in errors
+    /// @throws LoadError for a field that is missing, of the wrong type or out of range
+    static ModelConfig from_json(const std::string& text, const std::string& file);
+};
+
+bool operator==(const ModelConfig& a, const ModelConfig& b);
+
+/// Name and shape of one array of numbers of the network.
+using TensorShape = std::pair<std::string, std::vector<int>>;
+
+/// Learned tensors in a fixed order. A multilayer perceptron NAME has NAME.first.INPUT.weight for
+/// each of its inputs (the first layer is split: the sum over the inputs of weight x input equals
+/// one matrix times their concatenation), NAME.first.bias, NAME.hidden.K.{weight,bias},
+/// NAME.output.{weight,bias} and, but for the decoder, NAME.norm.{weight,bias}. Weights are
+/// (outputs x inputs).
+std::vector<TensorShape> parameter_shapes(const ModelConfig& config);
+
+/// Normalisation of the features: statistics.{node,edge,world,body}.{mean,deviation}.
+std::vector<TensorShape> statistics_shapes(const ModelConfig& config);
+
+}  // namespace cloth

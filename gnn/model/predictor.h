@@ -1,0 +1,21 @@
+#pragma once
+
+#include "gnn/graph/features.h"
+#include "gnn/model/model_config.h"
+
+namespace cloth {
+
+/// Evaluates a trained network: LibTorch, or an engine without it.
+class Predictor {
+ public:
+    virtual ~Predictor() = default;
+
+    virtual const ModelConfig& config() const = 0;
+
+    /// One evaluation. The predicted position of vertex i is base_i + scale * out_i.
+    /// @param graph  of the garment, built with config().graph_settings()
+    /// @param out    |V| x 3: scaled accelerations; not finite if the evaluation failed
+    virtual void predict(const ClothGraph& graph, const Features& features, Points& out) = 0;
+};
+
+}  // namespace cloth
