@@ -1,0 +1,107 @@
+#include "demos/compare/options.h"
+
+#include <map>
+#include <sstream>
+
+namespace cloth {
+namespace {
+
+std::vector<std::string> split(const std::string& list) {
+    std::vector<std::string> items;
+    std::stringstream stream(list);
+    for (std::string item; std::getline(stream, item, ',');)
+        if (!item.empty()) items.push_back(item);
+    return items;
+}
+
+std::string join(const std::vector<std::string>& items) {
+    std::string list;
+    for (const std::string& item : items) list += (list.empty() ? "" : ",") + item;
+    return list;
+}
+
+int whole_number(const std::string& option, const std::string& text, int lowest, int highest) {
+    size_t used = 0;
+    int value = 0;
+    try {
+        value = std::stoi(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    if (used != text.size() || text.empty() || value < lowest || value > highest)
+        throw UsageError(option + " " + text + ": give a whole number from " +
+                         std::to_string(lowest) + " to " + std::to_string(highest));
+    return value;
+}
+
+}  // namespace
+
+std::string compare_usage() {
+    return "compare: solvers of the same cloth on the same moving body, side by side\n"
+           "  --garment NAME         tshirt (4,000 vertices), tshirt_2000, tshirt_1000\n"
+           "  --motion NAME          01_01, 01_03, Boxing_Toes, a clip's number or a BVH file\n"
+           "  --fabric soft|real     soft cotton of 33 N/m, or cotton as measured, 5 kN/m\n"
+           "  --solvers A,B,...      bullet, bullet-fine, bullet-K (K iterations), reference,\n"
+           "                         quasi-newton-K, and networks: baseline, sampling, reduction,\n"
+           "                         fast, each with +K for K refinement iterations (default +2)\n"
+           "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"
+           "  --reference-frames N   frames with references and one-step errors (default 30; 0: all)\n"
+           "  --weights DIR          folder with NAME.safetensors (default: the committed weights)\n"
+           "  --threads N            0: all cores\n"
+           "  --no-video             tables and plots only\n"
+           "  --out DIR              where comparison.mp4, report.json and report.html go\n"
+           "A run that was interrupted goes on where it stopped; delete DIR/work to start afresh.\n";
+}
+
+CompareOptions parse_compare_options(const std::vector<std::string>& arguments) {
+    CompareOptions options;
+    options.solvers = {"bullet", "bullet-fine", "reference", "quasi-newton-3",
+                       "baseline", "fast", "fast+0"};
+    std::map<std::string, std::string*> texts = {
+        {"--garment", &options.garment}, {"--motion", &options.motion},
+        {"--fabric", &options.fabric},   {"--weights", &options.weights},
+        {"--out", &options.out},         {"--worker", &options.worker}};
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        const std::string& option = arguments[i];
+        if (option == "--help" || option == "-h") throw UsageError(compare_usage());
+        if (option == "--no-video") {
+            options.video = false;
+            continue;
+        }
+        if (i + 1 == arguments.size()) throw UsageError(option + " needs a value; see --help");
+        const std::string& value = arguments[++i];
+        if (texts.count(option))
+            *texts[option] = value;
+        else if (option == "--solvers")
+            options.solvers = split(value);
+        else if (option == "--frames")
+            options.frames = whole_number(option, value, 0, 100000);
+        else if (option == "--reference-frames")
+            options.reference_frames = whole_number(option, value, 0, 100000);
+        else if (option == "--threads")
+            options.threads = whole_number(option, value, 0, 256);
+        else
+            throw UsageError("unknown option " + option + "; see --help");
+    }
+    if (options.fabric != "soft" && options.fabric != "real")
+        throw UsageError("--fabric " + options.fabric + ": choose soft or real");
+    if (options.solvers.empty()) throw UsageError("--solvers: name at least one; see --help");
+    return options;
+}
+
+std::vector<std::string> worker_arguments(const CompareOptions& options,
+                                          const std::string& worker) {
+    std::vector<std::string> arguments = {
+        "--garment",  options.garment,  "--motion",  options.motion,
+        "--fabric",   options.fabric,   "--out",     options.out,
+        "--solvers",  join(options.solvers),
+        "--frames",   std::to_string(options.frames),
+        "--reference-frames", std::to_string(options.reference_frames),
+        "--threads",  std::to_string(options.threads),
+        "--worker",   worker};
+    if (!options.weights.empty())
+        arguments.insert(arguments.end(), {"--weights", options.weights});
+    return arguments;
+}
+
+}  // namespace cloth

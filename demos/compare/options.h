@@ -1,0 +1,37 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cloth {
+
+/// The command line is wrong, or asks for help: the message is what the user shall read.
+class UsageError : public std::runtime_error {
+   public:
+    using std::runtime_error::runtime_error;
+};
+
+struct CompareOptions {
+    std::string garment = "tshirt";
+    std::string motion = "01_01";
+    std::string fabric = "soft";  ///< soft (SNUG's cotton, 33 N/m) or real (5 kN/m)
+    std::vector<std::string> solvers;
+    int frames = 90;            ///< of the motion, after the second in which the garment settles
+    int reference_frames = 30;  ///< frames that the references are computed for; 0: all
+    int threads = 0;            ///< 0: all cores
+    std::string weights;        ///< folder of trained weights; empty: the committed ones
+    std::string out = "out/compare";
+    bool video = true;
+    std::string worker;  ///< internal: measure only this solver, in this process
+};
+
+std::string compare_usage();
+
+/// @throws UsageError
+CompareOptions parse_compare_options(const std::vector<std::string>& arguments);
+
+/// The arguments that make another process do the work `worker` of these options.
+std::vector<std::string> worker_arguments(const CompareOptions& options, const std::string& worker);
+
+}  // namespace cloth
