@@ -1,0 +1,153 @@
+#include "data/sheet.h"
+
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "data/errors.h"
+#include "data/mesh_quality.h"
+
+namespace cloth {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
+using Delaunay =
+    CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase>>;
+using Vec2 = Eigen::Vector2d;
+
+constexpr double kGoodAngle = 28.0;  // degrees at which the smoothing stops
+constexpr int kMaxRounds = 400;
+
+/// Points of the border first (they stay), then those of the inside.
+struct PointSet {
+    std::vector<Vec2> points;
+    size_t border = 0;
+};
+
+/// Edge length at which `target` vertices of regular triangles fill the rectangle:
+/// N = 2 A / (sqrt(3) h^2) + P / (2 h) + 1.
+double edge_length(double width, double depth, int target) {
+    const double a = 1.0 - target, b = width + depth, c = 2.0 / std::sqrt(3.0) * width * depth;
+    return (-b - std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
+}
+
+PointSet scatter(double width, double depth, int target, unsigned seed) {
+    const double h = edge_length(width, depth, target);
+    const int columns = std::max(1, static_cast<int>(std::lround(width / h)));
+    const int rows = std::max(1, static_cast<int>(std::lround(depth / h)));
+    PointSet set;
+    for (int i = 0; i <= columns; ++i)
+        for (double z : {0.0, depth}) set.points.emplace_back(width * i / columns, z);
+    for (int j = 1; j < rows; ++j)
+        for (double x : {0.0, width}) set.points.emplace_back(x, depth * j / rows);
+    set.border = set.points.size();
+    std::mt19937_64 random(seed);
+    const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    while (set.points.size() < static_cast<size_t>(std::max(target, columns * 2 + rows * 2 + 1)))
+        set.points.emplace_back(width * (0.02 + 0.96 * uniform()),
+                                depth * (0.02 + 0.96 * uniform()));
+    return set;
+}
+
+Faces triangulate(const std::vector<Vec2>& points) {
+    std::vector<std::pair<Kernel::Point_2, int>> input;
+    for (size_t i = 0; i < points.size(); ++i)
+        input.push_back({{points[i].x(), points[i].y()}, static_cast<int>(i)});
+    const Delaunay delaunay(input.begin(), input.end());
+    Faces faces(static_cast<Eigen::Index>(delaunay.number_of_faces()), 3);
+    Eigen::Index f = 0;
+    for (auto face = delaunay.finite_faces_begin(); face != delaunay.finite_faces_end(); ++face) {
+        // (x, z) is left-handed seen from +y: the second and third corner change places.
+        faces.row(f++) << face->vertex(0)->info(), face->vertex(2)->info(), face->vertex(1)->info();
+    }
+    return faces;
+}
+
+/// Moves inner points to the area-weighted mean of the centroids of their triangles.
+void smooth(PointSet& set, const Faces& faces) {
+    std::vector<Vec2> moment(set.points.size(), Vec2::Zero());
+    std::vector<double> weight(set.points.size(), 0.0);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+        const Vec2 a = set.points[static_cast<size_t>(faces(f, 0))];
+        const Vec2 b = set.points[static_cast<size_t>(faces(f, 1))];
+        const Vec2 c = set.points[static_cast<size_t>(faces(f, 2))];
+        const Vec2 u = b - a, v = c - a;
+        const double area = std::abs(u.x() * v.y() - u.y() * v.x());
+        for (int corner = 0; corner < 3; ++corner) {
+            const size_t i = static_cast<size_t>(faces(f, corner));
+            moment[i] += area * (a + b + c) / 3.0;
+            weight[i] += area;
+        }
+    }
+    for (size_t i = set.border; i < set.points.size(); ++i) set.points[i] = moment[i] / weight[i];
+}
+
+Points lift(const std::vector<Vec2>& points, double width, double depth) {
+    Points lifted(static_cast<Eigen::Index>(points.size()), 3);
+    for (size_t i = 0; i < points.size(); ++i)
+        lifted.row(static_cast<Eigen::Index>(i)) << points[i].x() - width / 2.0, 0.0,
+            points[i].y() - depth / 2.0;
+    return lifted;
+}
+
+void check_arguments(double width, double depth, int target_vertices) {
+    if (!(width > 0.0 && depth > 0.0 && std::isfinite(width + depth)))
+        throw ArgumentError("make_sheet: width, depth", "are not positive and finite",
+                            "give sizes in metres");
+    if (width > 20.0 * depth || depth > 20.0 * width)
+        throw ArgumentError("make_sheet: width, depth", "the sheet is too slender",
+                            "one side may be at most 20 times the other");
+    if (target_vertices < 9 || target_vertices > 200000)
+        throw ArgumentError("make_sheet: target_vertices",
+                            std::to_string(target_vertices) + " is out of range",
+                            "give 9 to 200000");
+}
+
+}  // namespace
+
+TriMesh make_sheet(double width, double depth, int target_vertices, unsigned seed) {
+    check_arguments(width, depth, target_vertices);
+    PointSet set = scatter(width, depth, target_vertices, seed);
+    TriMesh sheet{lift(set.points, width, depth), triangulate(set.points)};
+    for (int round = 0; round < kMaxRounds && smallest_angle(sheet) < kGoodAngle; ++round) {
+        smooth(set, sheet.faces);
+        sheet = {lift(set.points, width, depth), triangulate(set.points)};
+    }
+    return sheet;
+}
+
+std::vector<int> sheet_corners(const TriMesh& sheet) {
+    std::vector<int> corners;
+    for (double z : {-1.0, 1.0})
+        for (double x : {-1.0, 1.0}) {
+            Eigen::Index corner = 0;
+            (sheet.vertices * Vec3(x, 0.0, z)).maxCoeff(&corner);
+            corners.push_back(static_cast<int>(corner));
+        }
+    return corners;
+}
+
+std::vector<int> sheet_side(const TriMesh& sheet, SheetSide side) {
+    const bool across = side == SheetSide::left || side == SheetSide::right;
+    const bool low = side == SheetSide::left || side == SheetSide::back;
+    const VectorX coordinate = sheet.vertices.col(across ? 0 : 2);
+    const double level = low ? coordinate.minCoeff() : coordinate.maxCoeff();
+    const double tolerance = 1e-9 * (coordinate.maxCoeff() - coordinate.minCoeff());
+    std::vector<int> vertices;
+    for (Eigen::Index i = 0; i < coordinate.size(); ++i)
+        if (std::abs(coordinate[i] - level) <= tolerance) vertices.push_back(static_cast<int>(i));
+    const int along = across ? 2 : 0;
+    std::sort(vertices.begin(), vertices.end(),
+              [&](int a, int b) { return sheet.vertices(a, along) < sheet.vertices(b, along); });
+    return vertices;
+}
+
+}  // namespace cloth
