@@ -7,17 +7,22 @@
 
 namespace cloth {
 
-/// Nearest surface points of a set of query points, one row each. The closest point is chosen on the
-/// surfaces at t and carried along to t + dt (same face, same barycentric coordinates).
+enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
+
+/// Nearest surface points of a set of query points, one row each. The closest point is chosen on
+/// the surfaces at t and carried along to t + dt (same face, same barycentric coordinates). Rows
+/// without a contact are zero, their distance is infinite.
 struct SurfaceContacts {
     std::vector<int> obstacle;  ///< |V|: index into Boundary::obstacles, -1: none within the radius
     std::vector<int> face;      ///< |V|: face of a mesh obstacle, -1 for primitives
-    Points barycentric;         ///< |V| x 3: coordinates in that face, or local frame of a primitive
-    Points point0, point1;      ///< |V| x 3 (m): the surface point at t and at t + dt
-    Points normal0, normal1;    ///< |V| x 3: unit face normal there (outward) at t and at t + dt
-    VectorX distance;           ///< |V| (m): signed distance at t, negative inside; +inf: none
+    Points barycentric;       ///< |V| x 3: coordinates in that face, or local frame of a primitive
+    Points point0, point1;    ///< |V| x 3 (m): the surface point at t and at t + dt
+    Points normal0, normal1;  ///< |V| x 3: unit face normal there (outward) at t and at t + dt
+    VectorX distance;         ///< |V| (m): signed distance at t, negative inside; +inf: none
 
     bool has(Eigen::Index i) const { return obstacle[static_cast<size_t>(i)] >= 0; }
+    /// Mean velocity of the surface point over the step (m/s).
+    Vec3 velocity(Eigen::Index i, double dt) const { return (point1.row(i) - point0.row(i)) / dt; }
 };
 
 struct ProximitySettings {
@@ -25,13 +30,23 @@ struct ProximitySettings {
     int threads = 0;      ///< 0: as many as OpenMP gives; results do not depend on it
 };
 
-enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
-
 /// Nearest-point queries against the obstacles of a Boundary, on FCL's bounding volume hierarchies.
+///
+///     Proximity proximity;
+///     proximity.query(state.x, boundary, contacts);
+///     if (contacts.has(i) && contacts.distance[i] < 0) { ... vertex i is inside ... }
+///
 /// The hierarchy of a mesh is built when its `faces` pointer is first seen and refitted afterwards;
-/// the closest face of the previous query of the same vertex bounds the next one.
+/// the closest face of the previous query of the same vertex bounds the next one. A mesh that no
+/// query has shown for a while is forgotten. Results depend on the arguments alone: not on earlier
+/// queries, nor on the number of threads.
+///
+/// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
+/// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points
+/// with coordinates that are not finite have no contact. Unusable obstacles (see check_obstacles)
+/// are passed over, since nothing on the per-frame path throws.
 class Proximity {
-   public:
+ public:
     explicit Proximity(ProximitySettings settings = {});
     ~Proximity();
     Proximity(Proximity&&) noexcept;
@@ -40,15 +55,23 @@ class Proximity {
     const ProximitySettings& settings() const;
 
     /// Nearest points at t of the points `x` (|V| x 3, m), carried to t + dt.
-    void query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts);
+    /// @param chosen_at  end: nearest points at t + dt, carried back to t
+    void query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
+               StepEnd chosen_at = StepEnd::start);
 
     /// Signed distance (m) of `x` to the surfaces at one end of the step; +inf beyond the radius.
-    void signed_distance(const Points& x, const Boundary& boundary, StepEnd end,
-                         VectorX& distance);
+    void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
 
-   private:
+    /// Mesh hierarchies that are kept at present.
+    int cached_meshes() const;
+
+ private:
     struct Impl;
     std::unique_ptr<Impl> m_impl;
 };
+
+/// For set-up code: throws ArgumentError, naming the obstacle, if a query would have to pass it
+/// over (no faces, indices out of range, x0 or x1 without those vertices or not finite, bad sizes).
+void check_obstacles(const Boundary& boundary);
 
 }  // namespace cloth

@@ -1,0 +1,192 @@
+#include "collision/closest_face_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "collision/fcl_hierarchy.h"
+#include "collision/triangle.h"
+
+namespace cloth {
+
+static constexpr float infinity = std::numeric_limits<float>::infinity();
+
+ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, double radius)
+    : m_faces(&faces), m_radius(radius), m_vertices(vertices) {
+    build_nodes();
+    m_local.resize(static_cast<size_t>(vertices.rows()));
+    localize(1);
+    fit_leaves(1);
+    fit_inner_nodes();
+}
+
+/// Up to `width` nodes of the binary tree that together replace the children of `root`: the one
+/// with the most faces is opened until there is no room or nothing to open.
+static std::vector<int> wide_children(const std::vector<BinaryNode>& binary, int root) {
+    std::vector<int> children{root};
+    while (children.size() < ClosestFaceTree::width) {
+        const auto largest = std::max_element(children.begin(), children.end(), [&](int a, int b) {
+            return binary[static_cast<size_t>(a)].face_count <
+                   binary[static_cast<size_t>(b)].face_count;
+        });
+        const BinaryNode& opened = binary[static_cast<size_t>(*largest)];
+        if (opened.left < 0) break;
+        *largest = opened.left;
+        children.push_back(opened.right);
+    }
+    return children;
+}
+
+void ClosestFaceTree::build_nodes() {
+    const std::vector<BinaryNode> binary = build_fcl_hierarchy(m_vertices, *m_faces);
+    if (binary.empty()) return;
+    std::vector<int> roots{0};  // the binary node that each wide node replaces
+    for (size_t i = 0; i < roots.size(); ++i) {
+        Node node;
+        std::fill_n(&node.low[0][0], 3 * width, infinity);
+        std::fill_n(&node.high[0][0], 3 * width, -infinity);
+        std::fill_n(node.child, width, std::numeric_limits<std::int32_t>::min());
+        int slot = 0;
+        for (const int child : wide_children(binary, roots[i])) {
+            const BinaryNode& source = binary[static_cast<size_t>(child)];
+            node.child[slot++] = source.left < 0 ? ~source.face : static_cast<int>(roots.size());
+            if (source.left >= 0) roots.push_back(child);
+        }
+        m_nodes.push_back(node);
+    }
+}
+
+void ClosestFaceTree::refit(const Points& vertices, int threads) {
+    const size_t bytes = static_cast<size_t>(vertices.size()) * sizeof(double);
+    if (std::memcmp(vertices.data(), m_vertices.data(), bytes) == 0) return;
+    std::memcpy(m_vertices.data(), vertices.data(), bytes);
+    localize(threads);
+    fit_leaves(threads);
+    fit_inner_nodes();
+}
+
+/// Single-precision vertices relative to the centre: far from the world's origin the boxes stay
+/// tight. Coordinates of 2^-24 relative precision are off by less than the padding.
+void ClosestFaceTree::localize(int threads) {
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (Eigen::Index i = 0; i < m_vertices.rows(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double x = m_vertices(i, k);
+            if (!std::isfinite(x)) continue;
+            if (x < low[k]) low[k] = x;
+            if (x > high[k]) high[k] = x;
+        }
+    m_origin = 0.5 * (low + high);
+    if (!m_origin.allFinite()) m_origin.setZero();
+    const double extent = (high - low).norm() + m_radius;
+    m_padding = std::isfinite(extent) ? static_cast<float>(extent * 0x1p-21) : infinity;
+
+    const int count = static_cast<int>(m_vertices.rows());
+#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
+    for (int i = 0; i < count; ++i) {
+        const Vec3 x = m_vertices.row(i).transpose() - m_origin;
+        m_local[static_cast<size_t>(i)] << x.cast<float>().array(), 0.0f;
+    }
+}
+
+void ClosestFaceTree::fit_leaves(int threads) {
+    const int count = static_cast<int>(m_nodes.size());
+#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
+    for (int i = 0; i < count; ++i) {
+        Node& node = m_nodes[static_cast<size_t>(i)];
+        for (int slot = 0; slot < width; ++slot) {
+            const int face = ~node.child[slot];
+            if (face < 0 || face >= m_faces->rows()) continue;
+            const Vec4f& a = m_local[static_cast<size_t>((*m_faces)(face, 0))];
+            const Vec4f& b = m_local[static_cast<size_t>((*m_faces)(face, 1))];
+            const Vec4f& c = m_local[static_cast<size_t>((*m_faces)(face, 2))];
+            const bool finite = (a + b + c).isFinite().all();
+            const Vec4f low = a.min(b).min(c) - m_padding, high = a.max(b).max(c) + m_padding;
+            for (int k = 0; k < 3; ++k) {
+                node.low[k][slot] = finite ? low[k] : infinity;
+                node.high[k][slot] = finite ? high[k] : -infinity;
+            }
+        }
+    }
+}
+
+/// Children come after their parents, so one pass from the back is bottom-up.
+void ClosestFaceTree::fit_inner_nodes() {
+    for (size_t i = m_nodes.size(); i-- > 0;) {
+        Node& node = m_nodes[i];
+        for (int slot = 0; slot < width; ++slot) {
+            if (node.child[slot] < 0) continue;
+            const Node& child = m_nodes[static_cast<size_t>(node.child[slot])];
+            for (int k = 0; k < 3; ++k) {
+                node.low[k][slot] = *std::min_element(child.low[k], child.low[k] + width);
+                node.high[k][slot] = *std::max_element(child.high[k], child.high[k] + width);
+            }
+        }
+    }
+}
+
+void ClosestFaceTree::try_face(const Vec3& q, int face, FaceHit& best) const {
+    const Vec3 a = m_vertices.row((*m_faces)(face, 0));
+    const Vec3 b = m_vertices.row((*m_faces)(face, 1));
+    const Vec3 c = m_vertices.row((*m_faces)(face, 2));
+    if (!has_area(a, b, c)) return;
+    const TriangleHit hit = closest_on_triangle(q, a, b, c);
+    const bool is_tie = hit.squared == best.squared && (best.face < 0 || face < best.face);
+    if (hit.squared < best.squared || is_tie) best = {face, hit.barycentric, hit.squared};
+}
+
+/// Squared distances of a point to the eight boxes of a node.
+template <class Node, class Lanes>
+static void box_distances(const Node& node, const Eigen::Vector3f& q, Lanes& squared) {
+    for (int slot = 0; slot < ClosestFaceTree::width; ++slot) squared[slot] = 0.0f;
+    for (int k = 0; k < 3; ++k)
+        for (int slot = 0; slot < ClosestFaceTree::width; ++slot) {
+            const float below = node.low[k][slot] - q[k], above = q[k] - node.high[k][slot];
+            const float outside = std::max(std::max(below, above), 0.0f);
+            squared[slot] += outside * outside;
+        }
+}
+
+/// A bound for single-precision squared distances that keeps everything up to `squared`.
+static float widened(double squared) {
+    return static_cast<float>(squared) * 1.000002f + std::numeric_limits<float>::min();
+}
+
+FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& stack) const {
+    FaceHit best;
+    best.squared = radius * radius;
+    if (m_nodes.empty()) return best;
+    if (hint >= 0) try_face(q, hint, best);
+    const Eigen::Vector3f local = (q - m_origin).cast<float>();
+    float bound = widened(best.squared);
+
+    stack.push_back({0, 0.0f});
+    while (!stack.empty()) {
+        const Entry entry = stack.back();
+        stack.pop_back();
+        if (entry.squared > bound) continue;
+        if (entry.child < 0) {
+            if (~entry.child == hint) continue;
+            try_face(q, ~entry.child, best);
+            bound = widened(best.squared);
+            continue;
+        }
+        const Node& node = m_nodes[static_cast<size_t>(entry.child)];
+        alignas(32) Lanes squared;
+        box_distances(node, local, squared);
+        const size_t first = stack.size();
+        for (int slot = 0; slot < width; ++slot) {
+            if (!(squared[slot] <= bound)) continue;
+            const Entry found{node.child[slot], squared[slot]};
+            size_t place = stack.size();  // the nearest child ends on top
+            stack.push_back(found);
+            for (; place > first && stack[place - 1].squared < found.squared; --place)
+                stack[place] = stack[place - 1];
+            stack[place] = found;
+        }
+    }
+    return best;
+}
+
+}  // namespace cloth

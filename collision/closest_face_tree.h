@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "data/types.h"
+
+namespace cloth {
+
+/// The face of a mesh that is closest to a query point.
+struct FaceHit {
+    int face = -1;                    ///< -1: none within the radius
+    Vec3 barycentric = Vec3::Zero();  ///< exactly zero for corners that do not span the feature
+    double squared = 0.0;             ///< squared distance (m^2)
+};
+
+/// Closest-face queries against a mesh whose vertices move.
+///
+/// FCL builds the hierarchy; its binary nodes are merged into nodes of eight children whose boxes,
+/// in single precision relative to the mesh's centre, are tested together. The boxes are widened
+/// by more than the rounding, so the answer is the exact minimum over all faces, and equal
+/// distances go to the lowest face: neither the hint nor the order of the visit can change it.
+class ClosestFaceTree {
+ public:
+    static constexpr int width = 8;
+
+    /// A node that is still to be visited, and its squared distance. Each thread brings a stack.
+    struct Entry {
+        std::int32_t child;
+        float squared;
+    };
+    using Stack = std::vector<Entry>;
+
+    /// `faces` must outlive the tree and be in range of `vertices`.
+    /// @param radius  the largest radius of later queries (m)
+    ClosestFaceTree(const Points& vertices, const Faces& faces, double radius);
+
+    /// Moves the mesh (same faces). Cheap if `vertices` are those of the last call.
+    void refit(const Points& vertices, int threads);
+
+    /// Closest face within `radius` of q. Faces without area or with coordinates that are not
+    /// finite are no candidates (their edges belong to their neighbours too).
+    /// @param hint   a face that is probably close, or -1; it saves time
+    /// @param stack  scratch memory, empty
+    FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack) const;
+
+    const Points& vertices() const { return m_vertices; }
+    const Faces& faces() const { return *m_faces; }
+
+ private:
+    using Lanes = float[width];
+    struct alignas(32) Node {
+        Lanes low[3], high[3];      ///< boxes of the children; empty boxes are +inf to -inf
+        std::int32_t child[width];  ///< a node, or ~face
+    };
+    using Vec4f = Eigen::Array4f;
+
+    void build_nodes();
+    void localize(int threads);
+    void fit_leaves(int threads);
+    void fit_inner_nodes();
+    void try_face(const Vec3& q, int face, FaceHit& best) const;
+
+    const Faces* m_faces;
+    double m_radius;
+    Points m_vertices;
+    Vec3 m_origin = Vec3::Zero();
+    float m_padding = 0.0f;
+    std::vector<Vec4f, Eigen::aligned_allocator<Vec4f>> m_local;  ///< |V|: relative to the origin
+    std::vector<Node> m_nodes;                                    ///< parents before their children
+};
+
+}  // namespace cloth

@@ -1,0 +1,133 @@
+#include "collision/mesh_surface.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+
+#include "collision/triangle.h"
+#include "data/mesh.h"
+
+namespace cloth {
+
+/// Marks the ends of edges that have one face only.
+static std::vector<char> on_open_edge(Eigen::Index vertex_count, const Faces& faces) {
+    std::vector<std::array<int, 2>> edges;
+    edges.reserve(static_cast<size_t>(faces.size()));
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int a = faces(f, k), b = faces(f, (k + 1) % 3);
+            edges.push_back({std::min(a, b), std::max(a, b)});
+        }
+    std::sort(edges.begin(), edges.end());
+    std::vector<char> open(static_cast<size_t>(vertex_count), 0);
+    for (size_t i = 0; i < edges.size();) {
+        size_t end = i + 1;
+        while (end < edges.size() && edges[end] == edges[i]) ++end;
+        if (end == i + 1) open[size_t(edges[i][0])] = open[size_t(edges[i][1])] = 1;
+        i = end;
+    }
+    return open;
+}
+
+static std::vector<int> weld_open_edges(const Points& vertices, const Faces& faces) {
+    const std::vector<char> open = on_open_edge(vertices.rows(), faces);
+    std::vector<int> weld(open.size());
+    std::iota(weld.begin(), weld.end(), 0);
+    std::map<std::array<double, 3>, int> first_at;
+    for (size_t i = 0; i < open.size(); ++i) {
+        const Vec3 x = vertices.row(static_cast<Eigen::Index>(i));
+        if (!open[i] || !x.allFinite()) continue;
+        weld[i] = first_at.emplace(std::array<double, 3>{x[0], x[1], x[2]}, weld[i]).first->second;
+    }
+    return weld;
+}
+
+VertexFaces::VertexFaces(const Points& vertices, const Faces& faces)
+    : m_weld(weld_open_edges(vertices, faces)), m_first(m_weld.size() + 1, 0) {
+    for (Eigen::Index i = 0; i < faces.size(); ++i) ++m_first[size_t(welded(faces.data()[i])) + 1];
+    std::partial_sum(m_first.begin(), m_first.end(), m_first.begin());
+    m_faces.resize(static_cast<size_t>(faces.size()));
+    std::vector<int> next(m_first.begin(), m_first.end() - 1);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k)
+            m_faces[size_t(next[size_t(welded(faces(f, k)))]++)] = static_cast<int>(f);
+}
+
+MeshSurface::MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius)
+    : m_faces(std::move(faces)),
+      m_tree(vertices, *m_faces, radius),
+      m_vertex_faces(vertices, *m_faces) {
+}
+
+SurfaceHit MeshSurface::closest(const Vec3& q, double radius, int hint,
+                                ClosestFaceTree::Stack& stack) const {
+    const FaceHit hit = m_tree.closest(q, radius, hint, stack);
+    if (hit.face < 0) return {};
+    Vec3 point = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+        point += hit.barycentric[k] * m_tree.vertices().row((*m_faces)(hit.face, k)).transpose();
+    const bool inside_face = (hit.barycentric.array() != 0.0).all();
+    return inside_face ? on_face(hit, q - point) : on_edge_or_vertex(hit, q - point);
+}
+
+static double signed_root(double squared, bool negative) {
+    return negative ? -std::sqrt(squared) : std::sqrt(squared);
+}
+
+SurfaceHit MeshSurface::on_face(const FaceHit& hit, const Vec3& away) const {
+    const Points& x = m_tree.vertices();
+    const Vec3 a = x.row((*m_faces)(hit.face, 0));
+    const Vec3 b = x.row((*m_faces)(hit.face, 1));
+    const Vec3 c = x.row((*m_faces)(hit.face, 2));
+    const bool inside = (b - a).cross(c - a).dot(away) < 0.0;
+    return {hit.face, hit.barycentric, signed_root(hit.squared, inside)};
+}
+
+/// Angle (rad) of the corner `pivot` between the corners before and after it.
+static double corner_angle(const std::array<Vec3, 3>& corners, int pivot) {
+    const Vec3 u = corners[size_t((pivot + 1) % 3)] - corners[size_t(pivot)];
+    const Vec3 v = corners[size_t((pivot + 2) % 3)] - corners[size_t(pivot)];
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+}
+
+SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const {
+    const Points& x = m_tree.vertices();
+    std::array<int, 3> weld;     // of the corners of the hit face
+    int pivot = -1, other = -1;  // the feature's welded vertices; other is -1 at a vertex
+    for (int k = 0; k < 3; ++k) {
+        weld[size_t(k)] = m_vertex_faces.welded((*m_faces)(hit.face, k));
+        if (hit.barycentric[k] != 0.0) (pivot < 0 ? pivot : other) = weld[size_t(k)];
+    }
+
+    int front = -1, back = -1;  // the faces most squarely before and behind the point
+    double front_height = 0.0, back_height = 0.0, weighted = 0.0;
+    for (const int* face = m_vertex_faces.begin(pivot); face != m_vertex_faces.end(pivot); ++face) {
+        std::array<Vec3, 3> corners;
+        int pivot_corner = 0;
+        bool has_other = other < 0;
+        for (int k = 0; k < 3; ++k) {
+            const int vertex = (*m_faces)(*face, k);
+            corners[size_t(k)] = x.row(vertex);
+            if (m_vertex_faces.welded(vertex) == pivot) pivot_corner = k;
+            if (m_vertex_faces.welded(vertex) == other) has_other = true;
+        }
+        Vec3 normal;
+        if (!has_other || !triangle_normal(corners[0], corners[1], corners[2], normal)) continue;
+        const double height = normal.dot(away);
+        weighted += height * (other < 0 ? corner_angle(corners, pivot_corner) : 1.0);
+        if (front < 0 || height > front_height) front = *face, front_height = height;
+        if (back < 0 || height < back_height) back = *face, back_height = height;
+    }
+
+    const bool inside = weighted < 0.0;
+    SurfaceHit result{inside ? back : front, Vec3::Zero(), signed_root(hit.squared, inside)};
+    for (int k = 0; k < 3; ++k)
+        for (int j = 0; j < 3; ++j)
+            if (m_vertex_faces.welded((*m_faces)(result.face, k)) == weld[size_t(j)] &&
+                hit.barycentric[j] != 0.0)
+                result.barycentric[k] = hit.barycentric[j];
+    return result;
+}
+
+}  // namespace cloth

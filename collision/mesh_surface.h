@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/closest_face_tree.h"
+
+namespace cloth {
+
+/// Closest point of a mesh with the sign of its distance.
+struct SurfaceHit {
+    int face = -1;                    ///< -1: none within the radius
+    Vec3 barycentric = Vec3::Zero();  ///< of the closest point in that face
+    double distance = 0.0;            ///< signed distance (m), negative inside
+};
+
+/// Which faces meet at each vertex. Vertices of open edges that coincide (to the bit) in the first
+/// pose count as one: meshes split along seams, and unindexed triangles, are closed by that.
+class VertexFaces {
+ public:
+    VertexFaces(const Points& vertices, const Faces& faces);
+
+    int welded(int vertex) const { return m_weld[static_cast<size_t>(vertex)]; }
+    const int* begin(int welded) const { return m_faces.data() + m_first[size_t(welded)]; }
+    const int* end(int welded) const { return m_faces.data() + m_first[size_t(welded) + 1]; }
+
+ private:
+    std::vector<int> m_weld;   ///< |V|: representative vertex
+    std::vector<int> m_first;  ///< |V| + 1
+    std::vector<int> m_faces;  ///< faces by representative vertex, ascending
+};
+
+/// A moving mesh that answers signed closest-point queries.
+///
+/// The sign comes from the pseudonormal of the closest feature: the face's normal, the sum of the
+/// normals of the faces at an edge, or their sum weighted by angle at a vertex (Baerentzen and
+/// Aanaes 2005). Of the faces that share the feature, the one that the query point is most squarely
+/// in front of (or behind, inside) is reported: rounding cannot make the normal jump between them.
+class MeshSurface {
+ public:
+    MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius);
+
+    void refit(const Points& vertices, int threads) { m_tree.refit(vertices, threads); }
+
+    SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack) const;
+
+    const std::shared_ptr<const Faces>& faces() const { return m_faces; }
+    Eigen::Index vertex_count() const { return m_tree.vertices().rows(); }
+
+ private:
+    SurfaceHit on_face(const FaceHit& hit, const Vec3& away) const;
+    SurfaceHit on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const;
+
+    std::shared_ptr<const Faces> m_faces;
+    ClosestFaceTree m_tree;
+    VertexFaces m_vertex_faces;
+};
+
+}  // namespace cloth

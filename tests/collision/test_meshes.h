@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <random>
+
+#include "data/boundary.h"
+#include "data/mesh.h"
+
+namespace cloth::test {
+
+inline double uniform(std::mt19937& random, double low, double high) {
+    return low + (high - low) * (random() / 4294967296.0);  // the same on every platform
+}
+
+inline Vec3 random_point(std::mt19937& random, double half_width) {
+    const double x = uniform(random, -half_width, half_width);
+    const double y = uniform(random, -half_width, half_width);
+    return {x, y, uniform(random, -half_width, half_width)};
+}
+
+inline Points random_points(std::mt19937& random, Eigen::Index count, double half_width) {
+    Points points(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) points.row(i) = random_point(random, half_width);
+    return points;
+}
+
+/// Sphere of radius 1 from an icosahedron, each subdivision quarters the faces (20 * 4^n).
+inline TriMesh icosphere(int subdivisions) {
+    const double g = (1 + std::sqrt(5.0)) / 2;
+    std::vector<Vec3> points{{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
+                             {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
+                             {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+    std::vector<std::array<int, 3>> faces{
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    for (int pass = 0; pass < subdivisions; ++pass) {
+        std::map<std::array<int, 2>, int> middles;
+        const auto middle = [&](int a, int b) {
+            const auto [place, fresh] =
+                middles.emplace(std::array<int, 2>{std::min(a, b), std::max(a, b)},
+                                static_cast<int>(points.size()));
+            if (fresh) points.push_back(0.5 * (points[size_t(a)] + points[size_t(b)]));
+            return place->second;
+        };
+        std::vector<std::array<int, 3>> finer;
+        for (const auto& [a, b, c] : faces) {
+            const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            finer.insert(finer.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+        }
+        faces = finer;
+    }
+    TriMesh mesh{Points(points.size(), 3), Faces(faces.size(), 3)};
+    for (size_t i = 0; i < points.size(); ++i)
+        mesh.vertices.row(Eigen::Index(i)) = points[i].normalized();
+    for (size_t f = 0; f < faces.size(); ++f)
+        mesh.faces.row(Eigen::Index(f)) << faces[f][0], faces[f][1], faces[f][2];
+    return mesh;
+}
+
+/// Torus around the y axis: `rings` x `sides` quads, each cut in two.
+inline TriMesh torus(int rings, int sides, double major, double minor) {
+    TriMesh mesh{Points(rings * sides, 3), Faces(2 * rings * sides, 3)};
+    for (int i = 0; i < rings; ++i)
+        for (int j = 0; j < sides; ++j) {
+            const double u = 2 * M_PI * i / rings, v = 2 * M_PI * j / sides;
+            const double r = major + minor * std::cos(v);
+            const int at = i * sides + j, right = ((i + 1) % rings) * sides + j;
+            const int up = i * sides + (j + 1) % sides;
+            const int both = ((i + 1) % rings) * sides + (j + 1) % sides;
+            mesh.vertices.row(at) << r * std::cos(u), minor * std::sin(v), r * std::sin(u);
+            mesh.faces.row(2 * at) << at, up, both;
+            mesh.faces.row(2 * at + 1) << at, both, right;
+        }
+    return mesh;
+}
+
+/// The mesh with every vertex moved along the line to the origin by up to `amount` of its length:
+/// a closed, star-shaped, spiky surface with acute edges and corners.
+inline TriMesh roughened(TriMesh mesh, double amount, unsigned seed) {
+    std::mt19937 random(seed);
+    for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
+        mesh.vertices.row(i) *= 1 + uniform(random, -amount, amount);
+    return mesh;
+}
+
+inline Obstacle mesh_obstacle(const TriMesh& mesh) {
+    Obstacle obstacle;
+    obstacle.faces = std::make_shared<const Faces>(mesh.faces);
+    obstacle.x0 = obstacle.x1 = mesh.vertices;
+    return obstacle;
+}
+
+}  // namespace cloth::test
