@@ -1,0 +1,141 @@
+#include "gnn/physics/quasi_newton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "data/errors.h"
+
+namespace cloth {
+namespace {
+
+constexpr double sufficient_decrease = 1e-4;  // of Armijo's rule
+constexpr int max_backtracks = 20;
+
+double dot(const Points& a, const Points& b) {
+    return a.cwiseProduct(b).sum();
+}
+
+void check_range(const char* name, double value, double lowest, double highest) {
+    if (value >= lowest && value <= highest) return;
+    throw ArgumentError(std::string("QuasiNewtonSettings::") + name,
+                        std::to_string(value) + " is out of range",
+                        "choose from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+// Minimum of the parabola through E(0), its slope and E(step), kept within a tenth and a half.
+double shorter_step(double step, double energy, double slope, double trial_energy) {
+    const double parabola = -0.5 * slope * step * step / (trial_energy - energy - slope * step);
+    return std::isfinite(parabola) ? std::clamp(parabola, 0.1 * step, 0.5 * step) : 0.1 * step;
+}
+
+}  // namespace
+
+QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
+    : m_settings(settings), m_matrix(garment) {
+    check_range("iterations", settings.iterations, 0, 10000);
+    check_range("tolerance", settings.tolerance, 0.0, 1.0);
+    check_range("history", settings.history, 0, 50);
+    check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
+    const Eigen::Index free = m_matrix.free_count();
+    m_history.allocate(settings.history, free);
+    for (Points* array : {&m_gradient, &m_next_gradient, &m_direction, &m_right_side, &m_gathered,
+                          &m_preconditioned})
+        array->resize(free, 3);
+}
+
+void QuasiNewton::precondition(const Points& gradient, Points& out) const {
+    m_matrix.gather(gradient, m_gathered);
+    m_matrix.solve(m_gathered, m_preconditioned);
+    m_matrix.scatter(m_preconditioned, out);
+}
+
+MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x) {
+    MinimiseReport report;
+    if (!start(potential, x, report)) {
+        report.finite = false;
+        report.residual = std::numeric_limits<double>::quiet_NaN();
+        return report;
+    }
+    const auto met = [&] { return report.residual <= m_settings.tolerance; };
+    while (!met() && report.iterations < m_settings.iterations) {
+        if (!iterate(potential, x, report)) break;
+    }
+    report.converged = met();
+    return report;
+}
+
+bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
+                        MinimiseReport& report) {
+    const Garment& garment = potential.garment();
+    if (!m_matrix.fits(garment) || x.rows() != garment.vertex_count() || !x.allFinite())
+        return false;
+    if (!m_matrix.prepare(garment, potential.dt())) return false;
+    m_history.clear();
+    report.energy = potential.value_gradient(x, m_all_gradient);
+    report.evaluations = 1;
+    m_matrix.gather(m_all_gradient, m_gradient);
+    update_residual(potential, report);
+    return std::isfinite(report.energy) && m_gradient.allFinite();
+}
+
+void QuasiNewton::update_residual(const IncrementalPotential& potential,
+                                  MinimiseReport& report) const {
+    const double scale = std::max(potential.force_scale(), std::numeric_limits<double>::min());
+    report.residual = m_gradient.norm() / scale;
+}
+
+// One step; false where E cannot be lowered any further in double precision.
+bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
+                          MinimiseReport& report) {
+    find_direction(potential, x);
+    if (!line_search(potential, x, report)) {
+        if (m_history.empty()) return false;
+        m_history.clear();
+        find_direction(potential, x);
+        if (!line_search(potential, x, report)) return false;
+    }
+    ++report.iterations;
+    m_history.push(m_direction, m_gradient, m_next_gradient);
+    m_gradient.swap(m_next_gradient);
+    update_residual(potential, report);
+    return true;
+}
+
+void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
+    m_right_side = -m_gradient;
+    m_history.first_loop(m_right_side);
+    if (m_settings.contact_cg_iterations > 0 && m_matrix.set_contacts(potential, x))
+        m_matrix.solve_with_contacts(m_right_side, m_settings.contact_cg_iterations, m_direction);
+    else
+        m_matrix.solve(m_right_side, m_direction);
+    m_history.second_loop(m_direction);
+}
+
+// Moves x and leaves the step taken in m_direction, or leaves x as it is.
+bool QuasiNewton::line_search(const IncrementalPotential& potential, Points& x,
+                              MinimiseReport& report) {
+    const double slope = dot(m_gradient, m_direction);
+    if (!(slope < 0.0)) return false;
+    double step = 1.0;
+    for (int k = 0; k < max_backtracks; ++k) {
+        m_trial = x;
+        m_matrix.add_scaled(step, m_direction, m_trial);
+        const double energy = potential.value_gradient(m_trial, m_all_gradient);
+        ++report.evaluations;
+        if (energy <= report.energy + sufficient_decrease * step * slope) {
+            m_matrix.gather(m_all_gradient, m_next_gradient);
+            if (m_next_gradient.allFinite()) {
+                x.swap(m_trial);
+                m_direction *= step;
+                report.energy = energy;
+                return true;
+            }
+        }
+        step = shorter_step(step, report.energy, slope, energy);
+    }
+    return false;
+}
+
+}  // namespace cloth
