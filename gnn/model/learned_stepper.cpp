@@ -1,0 +1,109 @@
+#include "gnn/model/learned_stepper.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "data/errors.h"
+#include "gnn/physics/guess.h"
+
+namespace cloth {
+
+namespace {
+
+class Stopwatch {
+ public:
+    double lap_ms() {
+        const auto now = std::chrono::steady_clock::now();
+        const double ms = std::chrono::duration<double, std::milli>(now - m_start).count();
+        m_start = now;
+        return ms;
+    }
+
+ private:
+    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
+};
+
+QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
+    QuasiNewtonSettings solver;
+    solver.iterations = std::max(1, settings.refine);
+    solver.potential = settings.potential;
+    return solver;
+}
+
+}  // namespace
+
+LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor> predictor,
+                               LearnedStepperSettings settings)
+    : m_garment(&garment),
+      m_predictor(std::move(predictor)),
+      m_settings(settings),
+      m_graph(build_cloth_graph(garment, m_predictor->config().graph_settings())),
+      m_proximity(settings.proximity),
+      m_potential(garment, settings.potential),
+      m_solver(garment, refinement(settings)),
+      m_builder(garment, m_graph, m_predictor->config().features) {
+    if (settings.refine < 0 || settings.refine > 100)
+        throw ArgumentError("refine", std::to_string(settings.refine) + " is outside 0 to 100",
+                            "use 2, or 0 for the network alone");
+}
+
+std::string LearnedStepper::name() const {
+    return m_predictor->config().variant + "+" + std::to_string(m_settings.refine);
+}
+
+StepReport LearnedStepper::step(const Boundary& boundary, double dt, ClothState& state) {
+    StepReport report;
+    if (!is_valid_step(*m_garment, state, boundary, dt)) {
+        report.finite = false;
+        return report;
+    }
+    Stopwatch watch;
+    m_proximity.query(state.x, boundary, m_contacts);
+    report.times.proximity = watch.lap_ms();
+    predict(boundary, dt, state, report);
+    watch.lap_ms();
+    refine(report);
+    report.times.solve += watch.lap_ms();
+    report.finite = accept(boundary, dt, state, report);
+    report.times.contact = watch.lap_ms();
+    return report;
+}
+
+void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothState& state,
+                             StepReport& report) {
+    Stopwatch watch;
+    m_potential.begin_step(state, boundary, m_contacts, dt);
+    starting_guess(*m_garment, state, boundary, m_contacts, dt,
+                   m_settings.potential.contact_distance, m_guess);
+    m_builder.build(state, boundary, m_potential, m_guess, m_features);
+    report.times.features = watch.lap_ms();
+    m_predictor->predict(m_graph, m_features, m_output);
+    m_fell_back = m_output.rows() != m_guess.rows() || !m_output.allFinite();
+    m_prediction = m_guess;
+    if (!m_fell_back) m_prediction += m_features.scale * m_output;
+    place_pins(*m_garment, boundary, m_prediction);
+    report.times.solve = watch.lap_ms();
+}
+
+void LearnedStepper::refine(StepReport& report) {
+    m_x = m_prediction;
+    if (m_settings.refine == 0) return;
+    const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
+    report.iterations = minimum.iterations;
+    report.residual = minimum.residual;
+    report.converged = minimum.converged;
+}
+
+bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& state,
+                            StepReport& report) {
+    if (!m_x.allFinite()) return false;
+    m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
+    report.max_penetration = m_distance.size() > 0 ? std::max(0.0, -m_distance.minCoeff()) : 0.0;
+    state.v = (m_x - state.x) / dt;
+    state.x = m_x;
+    state.time += dt;
+    return true;
+}
+
+}  // namespace cloth

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <torch/torch.h>
+
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "gnn/graph/features.h"
+#include "gnn/model/weights.h"
+#include "gnn/train/message_op.h"
+#include "gnn/train/parameters.h"
+
+namespace cloth {
+
+/// Normalisation of the four feature matrices.
+struct NetworkStatistics {
+    FeatureStatistics node, edge, world, body;
+};
+
+/// MeshGraphNets (Pfaff et al. 2021) with FastClothGNN's sampling and message reduction, in
+/// LibTorch: encoders, `steps` message passing blocks with weights of their own, decoder.
+///
+/// First layers are split, W [e, v_i, v_j] = C e + A v_i + B v_j, with A v and B v computed once
+/// per node: the same function for fewer operations.
+class Network {
+ public:
+    Network(const ModelConfig& config, torch::Device device, std::uint64_t seed);
+    ~Network();
+    Network(const Network&) = delete;
+    Network& operator=(const Network&) = delete;
+
+    const ModelConfig& config() const { return m_config; }
+    Parameters& parameters() { return m_parameters; }
+
+    void set_statistics(const NetworkStatistics& statistics);
+    const NetworkStatistics& statistics() const { return m_statistics; }
+
+    /// Scaled accelerations (|V| x 3, float32, on the network's device), with gradient.
+    torch::Tensor forward(const ClothGraph& graph, const Features& features);
+
+    Weights export_weights() const;
+    /// @throws ArgumentError if the weights are of another configuration
+    void import_weights(const Weights& weights);
+
+ private:
+    struct GraphTables;
+    struct Step;
+    struct World;
+
+    void bind_parameters();
+    MlpWeights bind_mlp(const std::string& name, const std::vector<std::string>& inputs) const;
+    const GraphTables& tables_of(const ClothGraph& graph);
+    torch::Tensor to_device(const MatrixF& features, const FeatureStatistics& statistics) const;
+    torch::Tensor encode(const MlpWeights& weights, const torch::Tensor& features) const;
+    World encode_world(const Features& features) const;
+    torch::Tensor world_messages(const Step& step, const torch::Tensor& nodes, World& world,
+                                 bool last) const;
+
+    ModelConfig m_config;
+    torch::Device m_device;
+    Parameters m_parameters;
+    NetworkStatistics m_statistics;
+    MlpWeights m_node_encoder, m_edge_encoder, m_world_encoder, m_body_encoder, m_decoder;
+    std::vector<Step> m_steps;
+    std::map<std::uint64_t, std::unique_ptr<GraphTables>> m_tables;
+};
+
+}  // namespace cloth
