@@ -50,8 +50,11 @@ Boundary frame_boundary(const ComparisonScene& scene, int frame) {
     return scene.boundary(frame * dt, (frame + 1) * dt);
 }
 
+/// What a solver makes of one frame that starts in the reference's state.
+using SingleStep = std::function<Points(size_t frame, const Boundary&)>;
+
 /// Single steps from the reference's states.
-json one_step(const ComparisonScene& scene, const References& references, Stepper& stepper,
+json one_step(const ComparisonScene& scene, const References& references, const SingleStep& step,
               const std::function<void(int)>& done) {
     StepEnergies energies(scene.garment());
     std::vector<double> gap, progress, rmse;
@@ -60,15 +63,14 @@ json one_step(const ComparisonScene& scene, const References& references, Steppe
         const ClothState& before = references.coarse[frame];
         const ClothState& converged = references.coarse[frame + 1];
         const Boundary boundary = frame_boundary(scene, static_cast<int>(frame));
-        ClothState state = before;
-        stepper.step(boundary, ComparisonScene::frame_time, state);
+        const Points x = step(frame, boundary);
         energies.begin(before, boundary, ComparisonScene::frame_time);
         const double minimum = energies.potential().value(converged.x);
-        const double energy = energies.potential().value(state.x);
+        const double energy = energies.potential().value(x);
         gap.push_back(energies.gap(energy, minimum));
         progress.push_back(energies.progress(energy, minimum));
-        rmse.push_back(rmse_mm(state.x, converged.x));
-        terms.push_back(energies.potential().terms(state.x));
+        rmse.push_back(rmse_mm(x, converged.x));
+        terms.push_back(energies.potential().terms(x));
         done(static_cast<int>(frame) + 1);
     }
     if (gap.empty()) return nullptr;
@@ -160,14 +162,14 @@ double milliseconds_of(const std::function<void()>& work) {
         .count();
 }
 
-Rollout roll_out(const ComparisonScene& scene, const ClothState& start,
+Rollout roll_out(const ComparisonScene& scene, const ClothState& start, int frames,
                  const References& references, Stepper& stepper, Trajectory& trajectory,
                  const std::function<void(int)>& done) {
     Rollout rollout;
     StepEnergies energies(scene.garment());
     Proximity proximity;
     trajectory = {start};
-    for (int frame = 0; frame < scene.frames(); ++frame) {
+    for (int frame = 0; frame < frames; ++frame) {
         const Boundary boundary = frame_boundary(scene, frame);
         ClothState state = trajectory.back();
         StepReport report;
@@ -229,6 +231,36 @@ json series(const Rollout& rollout) {
             {"gap", numbers(rollout.gap)}};
 }
 
+/// Two steps: first steps allocate and fill caches, which is not what a frame costs.
+void warm_up(const ComparisonScene& scene, const ClothState& start, Stepper& stepper) {
+    for (int k = 0; k < 2; ++k) {
+        ClothState copy = start;
+        stepper.step(frame_boundary(scene, 0), ComparisonScene::frame_time, copy);
+    }
+}
+
+json solver_json(const std::string& name, const Stepper& stepper, double memory,
+                 const Rollout& rollout, const json& single) {
+    const bool failed = rollout.first_failed_frame >= 0;
+    return {{"name", name},
+            {"stepper", stepper.name()},
+            {"ms_per_frame",
+             {{"median", number(median(rollout.ms))},
+              {"p95", number(quantile(rollout.ms, 0.95))}}},
+            {"stages_ms",
+             {{"proximity", number(median(rollout.proximity))},
+              {"features", number(median(rollout.features))},
+              {"solve", number(median(rollout.solve))},
+              {"contact", number(median(rollout.contact))}}},
+            {"peak_memory_mb", number(memory)},
+            {"finite", rollout.finite},
+            {"first_failed_frame", failed ? json(rollout.first_failed_frame) : json(nullptr)},
+            {"failure", failed ? json(rollout.failure) : json(nullptr)},
+            {"one_step", single},
+            {"rollout", to_json(rollout)},
+            {"series", series(rollout)}};
+}
+
 }  // namespace
 
 Measurement measure(const std::string& name, const ComparisonScene& scene, const ClothState& start,
@@ -238,38 +270,42 @@ Measurement measure(const std::string& name, const ComparisonScene& scene, const
     const double memory_before = resident_memory_mb();
     reset_peak_memory();
     const std::unique_ptr<Stepper> stepper = make();
-    // first steps allocate and fill caches; that is not what a frame costs
-    for (int warm_up = 0; warm_up < 2; ++warm_up) {
-        ClothState copy = start;
-        stepper->step(frame_boundary(scene, 0), ComparisonScene::frame_time, copy);
-    }
+    warm_up(scene, start, *stepper);
     const double memory = peak_memory_mb() - memory_before;
-    const int steps = static_cast<int>(references.coarse.size()) + scene.frames();
     Measurement result;
-    const Rollout rollout =
-        roll_out(scene, start, references, *stepper, result.trajectory,
-                 [&](int done) { progress(done, steps, name + ", rollout"); });
-    const json single = one_step(scene, references, *stepper, [&](int done) {
-        progress(scene.frames() + done, steps, name + ", single steps");
+    const Rollout rollout = roll_out(
+        scene, start, scene.frames(), references, *stepper, result.trajectory,
+        [&](int done) { progress(done, scene.frames(), name + ", rollout"); });
+    const auto step = [&](size_t frame, const Boundary& boundary) {
+        ClothState state = references.coarse[frame];
+        stepper->step(boundary, ComparisonScene::frame_time, state);
+        return state.x;
+    };
+    const json single = one_step(scene, references, step, [&](int done) {
+        progress(done, static_cast<int>(references.coarse.size()) - 1, name + ", single steps");
     });
-    result.json = {
-        {"name", name},
-        {"stepper", stepper->name()},
-        {"ms_per_frame",
-         {{"median", number(median(rollout.ms))}, {"p95", number(quantile(rollout.ms, 0.95))}}},
-        {"stages_ms",
-         {{"proximity", number(median(rollout.proximity))},
-          {"features", number(median(rollout.features))},
-          {"solve", number(median(rollout.solve))},
-          {"contact", number(median(rollout.contact))}}},
-        {"peak_memory_mb", number(memory)},
-        {"finite", rollout.finite},
-        {"first_failed_frame",
-         rollout.first_failed_frame < 0 ? json(nullptr) : json(rollout.first_failed_frame)},
-        {"failure", rollout.failure.empty() ? json(nullptr) : json(rollout.failure)},
-        {"one_step", single},
-        {"rollout", to_json(rollout)},
-        {"series", series(rollout)}};
+    result.json = solver_json(name, *stepper, memory, rollout, single);
+    return result;
+}
+
+Measurement measure_reference(const ComparisonScene& scene, const ClothState& start,
+                              const Trajectory& fine,
+                              const std::function<std::unique_ptr<Stepper>()>& make,
+                              const ProgressFunction& progress) {
+    const double memory_before = resident_memory_mb();
+    reset_peak_memory();
+    const std::unique_ptr<Stepper> stepper = make();
+    Measurement result;
+    References references{{}, fine};
+    Rollout rollout = roll_out(
+        scene, start, scene.reference_frames(), references, *stepper, result.trajectory,
+        [&](int done) { progress(done, scene.reference_frames(), "reference, 1/30 s"); });
+    const double memory = peak_memory_mb() - memory_before;
+    references.coarse = result.trajectory;
+    rollout.error.assign(rollout.error.size(), 0.0);
+    const auto step = [&](size_t frame, const Boundary&) { return result.trajectory[frame + 1].x; };
+    const json single = one_step(scene, references, step, [](int) {});
+    result.json = solver_json("reference", *stepper, memory, rollout, single);
     return result;
 }
 

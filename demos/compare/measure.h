@@ -23,10 +23,6 @@ using ProgressFunction = std::function<void(int, int, const std::string&)>;
 /// The state in which all solvers start: the garment settled on the body during the lead-in.
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress);
 
-/// The reference's trajectory from the settled state; each frame is one converged step.
-Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
-                            const ProgressFunction& progress);
-
 /// The fine reference: eight converged steps of 1/240 s per frame.
 Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
                           const ProgressFunction& progress);
@@ -43,5 +39,12 @@ Measurement measure(const std::string& name, const ComparisonScene& scene, const
                     const References& references,
                     const std::function<std::unique_ptr<Stepper>()>& make,
                     const ProgressFunction& progress);
+
+/// The same for the solver that is the reference at the frame's time step. Its trajectory ends
+/// after reference_frames; single steps from its own states are its own next states.
+Measurement measure_reference(const ComparisonScene& scene, const ClothState& start,
+                              const Trajectory& fine,
+                              const std::function<std::unique_ptr<Stepper>()>& make,
+                              const ProgressFunction& progress);
 
 }  // namespace cloth

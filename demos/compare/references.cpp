@@ -1,5 +1,4 @@
 #include "demos/compare/measure.h"
-#include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
 
 namespace cloth {
@@ -22,19 +21,6 @@ ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress
     }
     state.time = 0.0;
     return state;
-}
-
-Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
-                            const ProgressFunction& progress) {
-    ImplicitStepper stepper(scene.garment());
-    const double dt = ComparisonScene::frame_time;
-    Trajectory trajectory = {start};
-    for (int frame = 0; frame < scene.reference_frames(); ++frame) {
-        trajectory.push_back(trajectory.back());
-        stepper.step(scene.boundary(frame * dt, (frame + 1) * dt), dt, trajectory.back());
-        progress(frame + 1, scene.reference_frames(), "reference, 1/30 s");
-    }
-    return trajectory;
 }
 
 Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
