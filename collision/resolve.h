@@ -1,0 +1,36 @@
+#pragma once
+
+#include "collision/proximity.h"
+
+namespace cloth {
+
+/// Pushes every vertex of `x` (|V| x 3, m, at t + dt) that is closer than `distance` (m) to its
+/// carried plane (point1, normal1) out along normal1 to that distance. Closed form, no query: the
+/// guess from which solvers and networks start. Returns how many vertices it moved.
+///
+/// The plane is that of one face: a vertex that slides past the end of a convex part is pushed
+/// although it is outside, by no more than it would have sunk below the plane.
+int project_out(const SurfaceContacts& contacts, double distance, Points& x);
+
+/// What resolve_penetration() found and left (m). Vertices beyond the proximity's radius are not
+/// seen.
+struct ResolveReport {
+    double max_depth_before = 0.0;  ///< deepest vertex inside an obstacle
+    double max_depth_after = 0.0;
+    int moved = 0;       ///< vertices moved, counted once per iteration
+    int iterations = 0;  ///< 0: no vertex was closer than the distance
+};
+
+/// The last safety of a step: queries the surfaces at t + dt and moves every vertex that is closer
+/// than `distance` (m, small: 0 to 1e-3) to that distance from its closest point, again if that
+/// brought it too close to another surface. Pinned vertices are moved as well; callers put them
+/// back.
+ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
+                                  Points& x, int max_iterations = 3);
+
+/// The same without allocation: `contacts` is scratch memory, kept by the caller. Afterwards it
+/// holds the nearest points of `x` at t + dt (of obstacles, if there are any).
+ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
+                                  Points& x, SurfaceContacts& contacts, int max_iterations = 3);
+
+}  // namespace cloth
