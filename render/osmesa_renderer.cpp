@@ -34,10 +34,10 @@ LoadError osmesa_error(const std::string& place, const std::string& problem) {
                      "install Debian's libosmesa6 of version 20 or newer");
 }
 
-/// sRGB to the linear light that shaders calculate with.
+/// What is shown to the light that shaders calculate with: the inverse of their shown().
 Vec3f linear(Rgb colour) {
-    const auto channel = [](std::uint8_t value) { return std::pow(value / 255.0f, 2.2f); };
-    return {channel(colour.r), channel(colour.g), channel(colour.b)};
+    const Vec3f shown = Vec3f(colour.r, colour.g, colour.b) / 255.0f;
+    return shown.cwiseProduct(shown);
 }
 
 /// A linked pair of shaders.
@@ -226,8 +226,10 @@ Drawable ground_quad(const Ground& ground) {
     return quad;
 }
 
-std::string fragment_source(const char* body) {
-    return std::string("#version 120\n#define SHADOW_TAPS 8\n#define SHADOW_BLUR 4.0\n") +
+/// @param blur  radius of the shadow's soft border (texels)
+std::string fragment_source(int taps, int blur, const char* body) {
+    return "#version 120\n#define SHADOW_TAPS " + std::to_string(taps) +
+           "\n#define SHADOW_BLUR float(" + std::to_string(blur) + ")\n" +
            shaders::kShadowFunction + body;
 }
 
@@ -279,9 +281,9 @@ OsmesaRenderer::Implementation::Implementation(const OsmesaSettings& settings)
     try {
         make_current();
         m_mesh_program = std::make_unique<Program>("mesh", shaders::kMeshVertex,
-                                                   fragment_source(shaders::kMeshFragment));
-        m_ground_program = std::make_unique<Program>("ground", shaders::kMeshVertex,
-                                                     fragment_source(shaders::kGroundFragment));
+                                                   fragment_source(8, 3, shaders::kMeshFragment));
+        m_ground_program = std::make_unique<Program>(
+            "ground", shaders::kMeshVertex, fragment_source(6, 4, shaders::kGroundFragment));
         m_shadow_program =
             std::make_unique<Program>("shadow", shaders::kMeshVertex, shaders::kEmptyFragment);
         make_shadow_map();
@@ -448,7 +450,7 @@ Image OsmesaRenderer::render(const Scene& scene, const Camera& camera) {
 Rgb back_of(Rgb front) {
     const auto darker = [&](std::uint8_t c) {
         const double grey = (front.r + front.g + front.b) / 3.0;
-        return static_cast<std::uint8_t>(0.62 * (0.65 * c + 0.35 * grey));
+        return static_cast<std::uint8_t>(0.8 * (0.6 * c + 0.4 * grey));
     };
     return {darker(front.r), darker(front.g), darker(front.b)};
 }

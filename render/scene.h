@@ -51,12 +51,12 @@ struct Ground {
 
 /// Directional lights; directions point from the scene to the light, any length.
 struct Lights {
-    Vec3 key = Vec3(0.55, 1.0, 0.7);
-    double key_strength = 0.95;
+    Vec3 key = Vec3(0.75, 0.9, 0.55);
+    double key_strength = 0.72;
     Vec3 fill = Vec3(-0.9, 0.35, 0.6);
-    double fill_strength = 0.28;
-    double ambient_sky = 0.36;     ///< light from above
-    double ambient_ground = 0.20;  ///< light from below
+    double fill_strength = 0.22;
+    double ambient_sky = 0.30;     ///< light from above
+    double ambient_ground = 0.22;  ///< light from below
     bool shadows = true;           ///< of the key light
 };
 

@@ -48,10 +48,12 @@ uniform float key_strength;
 uniform float fill_strength;
 uniform float ambient_sky;
 uniform float ambient_ground;
-vec3 shown(vec3 linear) { return pow(clamp(linear, 0.0, 1.0), vec3(1.0 / 2.2)); }
+// A square root stands for the exponent 1 / 2.2 of sRGB: the eye does not tell, software does.
+vec3 shown(vec3 linear) { return sqrt(clamp(linear, 0.0, 1.0)); }
 )";
 
 constexpr char kMeshFragment[] = R"(
+float pow2(float x) { return x * x; }
 varying vec3 world;
 varying vec3 world_normal;
 uniform vec3 eye;
@@ -65,9 +67,11 @@ void main() {
     float towards_key = max(dot(n, key), 0.0);
     float direct = towards_key > 0.0 ? towards_key * lit(world, n) : 0.0;
     float around = mix(ambient_ground, ambient_sky, 0.5 + 0.5 * n.y);
-    float rim = 0.12 * pow(1.0 - max(dot(n, to_eye), 0.0), 3.0);
+    float edge = 1.0 - max(dot(n, to_eye), 0.0);
+    float rim = 0.12 * edge * edge * edge;
     float light = key_strength * direct + fill_strength * max(dot(n, fill), 0.0) + around + rim;
-    float highlight = gloss * direct * pow(max(dot(n, normalize(key + to_eye)), 0.0), 40.0);
+    float h2 = pow2(max(dot(n, normalize(key + to_eye)), 0.0));
+    float highlight = gloss * direct * pow2(pow2(pow2(pow2(h2))));  // exponent 32
     gl_FragColor = vec4(shown(base * light + highlight), 1.0);
 }
 )";

@@ -8,6 +8,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -24,6 +25,20 @@ std::string text_of(int error) {
     std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
     return av_make_error_string(text.data(), text.size(), error);
 }
+
+/// Keeps ffmpeg's progress messages off the terminal; warnings and errors stay.
+class QuietFfmpeg {
+ public:
+    QuietFfmpeg() : m_level(av_log_get_level()) {
+        av_log_set_level(std::min(m_level, AV_LOG_WARNING));
+    }
+    ~QuietFfmpeg() { av_log_set_level(m_level); }
+    QuietFfmpeg(const QuietFfmpeg&) = delete;
+    QuietFfmpeg& operator=(const QuietFfmpeg&) = delete;
+
+ private:
+    int m_level;
+};
 
 void check_settings(int width, int height, const VideoSettings& settings) {
     const auto bad = [](int size) { return size < 16 || size > 8192 || size % 2 != 0; };
@@ -82,6 +97,7 @@ VideoWriter::Implementation::Implementation(const std::string& path, int width, 
                                             const VideoSettings& settings)
     : m_file(path) {
     check_settings(width, height, settings);
+    const QuietFfmpeg quiet;
     try {
         open(width, height, settings);
     } catch (...) {
@@ -134,6 +150,8 @@ void VideoWriter::Implementation::open_file() {
     m_stream->avg_frame_rate = m_encoder->framerate;
     require(avcodec_parameters_from_context(m_stream->codecpar, m_encoder), "stream");
     m_format->flags |= AVFMT_FLAG_BITEXACT;
+    // "faststart" opens the file once more, by this name.
+    m_format->url = av_strdup(m_file.temporary_path().c_str());
     require(avio_open(&m_format->pb, m_file.temporary_path().c_str(), AVIO_FLAG_WRITE), "");
     AVDictionary* options = nullptr;
     av_dict_set(&options, "movflags", "+faststart", 0);
@@ -195,6 +213,7 @@ void VideoWriter::Implementation::close() {
     if (m_frame_count == 0)
         throw ArgumentError("VideoWriter::close", "no picture was added to " + m_file.path(),
                             "add at least one");
+    const QuietFfmpeg quiet;
     require(avcodec_send_frame(m_encoder, nullptr), "encoder libx264");
     write_packets();
     require(av_write_trailer(m_format), "trailer");
@@ -204,6 +223,7 @@ void VideoWriter::Implementation::close() {
 }
 
 void VideoWriter::Implementation::release() {
+    const QuietFfmpeg quiet;
     sws_freeContext(m_converter);
     av_frame_free(&m_frame);
     av_packet_free(&m_packet);
