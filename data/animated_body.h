@@ -1,0 +1,65 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "data/boundary.h"
+#include "data/retarget.h"
+
+namespace cloth {
+
+struct AnimationSettings {
+    double lead_in = 1.0;  ///< the body moves from its rest pose into the motion's first pose, so
+                           ///< that a garment made for the rest pose settles (s), 0.2 to 5
+    double start_ramp = 8.0 / 30.0;  ///< the motion then takes up speed over this time instead of
+                                     ///< with a jolt (s), 0 to 1; it ends start_ramp / 2 later
+    double friction = 0.5;           ///< of the skin against cloth (Coulomb), 0 to 1.5
+    RetargetSettings retarget;
+};
+
+/// A body that moves: first from the rest pose into the motion (lead-in), then through it. Poses
+/// between keys are interpolated with continuous velocity, so any time step may be used.
+///
+///     AnimatedBody body(std::make_shared<Body>(Body::load_default()),
+///     load_motion_by_name("01_01")); boundary.obstacles = {body.obstacle(t, t + dt)};
+///
+/// Times (s) below 0 give the rest pose, times after duration() the last pose.
+class AnimatedBody {
+ public:
+    /// @throws LoadError if the motion's skeleton cannot be mapped to the body's
+    AnimatedBody(std::shared_ptr<const Body> body, const Motion& motion,
+                 const AnimationSettings& settings = {});
+
+    const Body& body() const { return *m_body; }
+    const AnimationSettings& settings() const { return m_settings; }
+
+    /// Lead-in and motion together (s).
+    double duration() const;
+    /// Number of poses at times 0, dt, 2 dt, ... up to duration().
+    int frame_count(double dt) const;
+
+    BodyPose pose(double time) const;
+    /// Where each joint moves the skin (|joints|); identities at time 0.
+    JointTransforms joint_transforms(double time) const;
+    /// Skin vertices (|V| x 3, m).
+    Points vertices(double time) const;
+    std::shared_ptr<const Faces> faces() const { return m_body->faces(); }
+
+    /// The skin as an obstacle of a step from t0 to t1. The last pose is kept, so consecutive steps
+    /// cost one skinning each. Safe to call from several threads.
+    Obstacle obstacle(double t0, double t1) const;
+
+ private:
+    struct Cache;
+    Points cached_vertices(double time) const;
+    BodyPose motion_pose(double motion_time) const;
+
+    std::shared_ptr<const Body> m_body;
+    AnimationSettings m_settings;
+    double m_frame_time;
+    std::vector<BodyPose> m_keys;
+    std::vector<std::vector<Eigen::Quaterniond>> m_tangents;  ///< |keys| x |joints|, for squad
+    std::shared_ptr<Cache> m_cache;
+};
+
+}  // namespace cloth
