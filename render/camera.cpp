@@ -117,16 +117,21 @@ FigureTracker::Box FigureTracker::box_of(const Points& figure) const {
 /// In depth the camera follows softly, too, but never falls far behind.
 void FigureTracker::slide_in_depth(const Box& box) {
     const double middle = 0.5 * (box.low.z() + box.high.z());
-    const double slack = m_settings.dead_zone * (box.high - box.low).norm();
+    const double slack = depth_slack(box);
     const double wanted = std::clamp(m_middle.z(), middle - slack, middle + slack);
     m_middle.z() += m_settings.smoothing * (wanted - m_middle.z());
     m_middle.z() = std::clamp(m_middle.z(), middle - 3.0 * slack, middle + 3.0 * slack);
 }
 
+double FigureTracker::depth_slack(const Box& box) const {
+    return m_settings.dead_zone * (box.high - box.low).norm();
+}
+
 /// Moves back until the box fits between the margins, with the dead zone to spare, even where it is
 /// nearest to the eye.
 void FigureTracker::widen(const Box& box) {
-    const double nearest = m_middle.z() - box.low.z();
+    const double half_depth = 0.5 * (box.high.z() - box.low.z());
+    const double nearest = std::max(m_middle.z() - box.low.z(), half_depth + depth_slack(box));
     const double room = 1.0 - 2.0 * (m_settings.margin + m_settings.dead_zone);
     for (int axis = 0; axis < 2; ++axis) {
         const double half = 0.5 * (box.high[axis] - box.low[axis]);

@@ -70,6 +70,7 @@ class FigureTracker {
         Vec3 high;
     };
     Box box_of(const Points& figure) const;
+    double depth_slack(const Box& box) const;
     void slide_in_depth(const Box& box);
     void widen(const Box& box);
     void slide_sideways(const Box& box);

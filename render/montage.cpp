@@ -1,7 +1,6 @@
 #include "render/montage.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "data/errors.h"
 #include "render/text.h"
@@ -18,17 +17,16 @@ struct Layout {
     int caption;       ///< height of the caption
 };
 
-/// The number of columns whose picture is nearest to 16:9.
+/// The number of columns that shows panels largest on a screen of 16:9.
 int best_columns(int count, int panel_width, int panel_height) {
     int best = 1;
-    double best_error = 0.0;
+    double best_scale = 0.0;
     for (int columns = 1; columns <= count; ++columns) {
         const int rows = (count + columns - 1) / columns;
-        const double aspect = double(columns) * panel_width / (double(rows) * panel_height);
-        const double error = std::abs(std::log(aspect * 9.0 / 16.0));
-        if (columns == 1 || error < best_error) {
+        const double scale = std::min(16.0 / (columns * panel_width), 9.0 / (rows * panel_height));
+        if (scale > best_scale) {
             best = columns;
-            best_error = error;
+            best_scale = scale;
         }
     }
     return best;
