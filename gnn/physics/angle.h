@@ -28,7 +28,7 @@ inline double fast_atan2(double y, double x) {
     p = p * z - 0.3333333333333312116;
     p = p * z + 0.9999999999999999987;
     double angle = t * p + (reduce ? 0.25 * pi : 0.0);
-    angle = ay < ax ? angle : 0.5 * pi - angle;
+    angle = ay <= ax ? angle : 0.5 * pi - angle;
     angle = x < 0.0 ? pi - angle : angle;
     return y < 0.0 ? -angle : angle;
 }

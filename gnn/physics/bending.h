@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "data/garment.h"
+#include "gnn/physics/block_pattern.h"
 
 namespace cloth {
 
@@ -24,6 +25,10 @@ class BendingEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// Adds the Hessian (N/m) to the values of a matrix of `pattern`. Projected means Gauss-Newton:
+    /// the part with the second derivative of the angle is left out.
+    void add_hessian(const Points& x, const BlockPattern& pattern, HessianKind kind,
+                     double* values) const;
 
  private:
     template <bool with_gradient>

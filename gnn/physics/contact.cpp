@@ -33,4 +33,14 @@ double ContactEnergy::add_gradient(const Points& x, double weight, Points& gradi
     return energy;
 }
 
+void ContactEnergy::add_hessian(const Points& x, double weight, const BlockPattern& pattern,
+                                double* values) const {
+    for (const Plane& plane : m_planes) {
+        const double depth = plane.offset - plane.normal.dot(x.row(plane.vertex).transpose());
+        if (depth > 0.0)
+            add_block(values, pattern.diagonal(plane.vertex),
+                      6.0 * weight * depth * plane.normal * plane.normal.transpose());
+    }
+}
+
 }  // namespace cloth

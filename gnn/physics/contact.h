@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collision/proximity.h"
+#include "gnn/physics/block_pattern.h"
 
 namespace cloth {
 
@@ -20,6 +21,9 @@ class ContactEnergy {
     double value(const Points& x, double weight) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, double weight, Points& gradient) const;
+    /// Adds the Hessian (N/m), positive semi-definite by itself, to a matrix of `pattern`.
+    void add_hessian(const Points& x, double weight, const BlockPattern& pattern,
+                     double* values) const;
 
  private:
     struct Plane {

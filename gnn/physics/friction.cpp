@@ -71,4 +71,17 @@ double FrictionEnergy::add_gradient(const Points& x, Points& gradient) const {
     return energy;
 }
 
+void FrictionEnergy::add_hessian(const Points& x, const BlockPattern& pattern,
+                                 double* values) const {
+    for (const Slider& slider : m_sliders) {
+        const Vec3 slip =
+            tangential(x.row(slider.vertex).transpose() - slider.stick, slider.normal);
+        const double smooth = std::sqrt(m_slip * m_slip + slip.squaredNorm());
+        const Eigen::Matrix3d tangent =
+            Eigen::Matrix3d::Identity() - slider.normal * slider.normal.transpose();
+        add_block(values, pattern.diagonal(slider.vertex),
+                  slider.force / smooth * (tangent - slip * slip.transpose() / (smooth * smooth)));
+    }
+}
+
 }  // namespace cloth

@@ -4,7 +4,7 @@
 
 #include "collision/proximity.h"
 #include "data/cloth_state.h"
-#include "data/garment.h"
+#include "gnn/physics/block_pattern.h"
 
 namespace cloth {
 
@@ -41,14 +41,20 @@ class FrictionEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// Adds the Hessian (N/m), positive semi-definite by itself, to a matrix of `pattern`.
+    void add_hessian(const Points& x, const BlockPattern& pattern, double* values) const;
 
- private:
+    /// A vertex that friction acts on.
     struct Slider {
         Eigen::Index vertex;
         Vec3 normal;   ///< mean of the surface's normals at t and t + dt
         Vec3 stick;    ///< where the vertex would be at t + dt if it stuck (m)
         double force;  ///< mu N (N)
     };
+    const std::vector<Slider>& sliders() const { return m_sliders; }
+    double slip() const { return m_slip; }  ///< s (m)
+
+ private:
     std::vector<Slider> m_sliders;
     double m_slip = 1e-4;
 };

@@ -47,6 +47,7 @@ void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, Eigen:
 IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSettings settings)
     : m_garment(&garment),
       m_settings(settings),
+      m_pattern(std::make_shared<const BlockPattern>(garment)),
       m_strain(garment),
       m_bending(garment),
       m_gravity(garment),
@@ -131,6 +132,17 @@ void IncrementalPotential::elastic_gradient(const Points& x, Points& gradient) c
     m_strain.add_gradient(x, gradient);
     m_bending.add_gradient(x, gradient);
     mask_pins(gradient);
+}
+
+void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
+                                   HessianKind kind) const {
+    m_pattern->reset(hessian);
+    double* values = hessian.valuePtr();
+    m_strain.add_hessian(x, *m_pattern, kind, values);
+    m_bending.add_hessian(x, *m_pattern, kind, values);
+    m_inertia.add_hessian(*m_pattern, values);
+    m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
+    m_friction.add_hessian(x, *m_pattern, values);
 }
 
 void IncrementalPotential::mask_pins(Points& gradient) const {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <memory>
 
 #include "collision/proximity.h"
 #include "data/boundary.h"
 #include "data/cloth_state.h"
 #include "gnn/physics/bending.h"
+#include "gnn/physics/block_pattern.h"
 #include "gnn/physics/contact.h"
 #include "gnn/physics/friction.h"
 #include "gnn/physics/gravity.h"
@@ -59,8 +61,11 @@ class IncrementalPotential {
     EnergyTerms terms(const Points& x) const;
     double value(const Points& x) const;
     double value_gradient(const Points& x, Points& gradient) const;
-    /// Hessian of E with each element's block projected to positive semi-definite (3|V| x 3|V|).
-    void hessian(const Points& x, Eigen::SparseMatrix<double>& hessian) const;
+    /// Hessian of E (3|V| x 3|V|, both triangles), by default with each element's block made
+    /// positive semi-definite. The sparsity is the same for every x: a matrix passed again is only
+    /// refilled.
+    void hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
+                 HessianKind kind = HessianKind::projected) const;
     /// Gradient of strain + bending only (|V| x 3, N): the force features' ingredient.
     void elastic_gradient(const Points& x, Points& gradient) const;
 
@@ -72,6 +77,7 @@ class IncrementalPotential {
     double dt() const { return m_dt; }
     const SurfaceContacts& contacts() const { return m_contacts; }
     const Points& inertial_target() const { return m_inertia.target(); }  ///< x_t + dt v_t
+    const FrictionEnergy& friction() const { return m_friction; }         ///< of this step
 
     void set_contact_weight(double weight) { m_settings.contact_weight = weight; }
 
@@ -84,6 +90,7 @@ class IncrementalPotential {
     double m_dt = 0.0;
     double m_force_scale = 0.0;
     SurfaceContacts m_contacts;
+    std::shared_ptr<const BlockPattern> m_pattern;
     StrainEnergy m_strain;
     BendingEnergy m_bending;
     GravityEnergy m_gravity;

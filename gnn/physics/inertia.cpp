@@ -28,4 +28,9 @@ double InertiaEnergy::add_gradient(const Points& x, Points& gradient) const {
     return energy;
 }
 
+void InertiaEnergy::add_hessian(const BlockPattern& pattern, double* values) const {
+    for (Eigen::Index i = 0; i < m_stiffness.size(); ++i)
+        add_block(values, pattern.diagonal(i), m_stiffness[i] * Eigen::Matrix3d::Identity());
+}
+
 }  // namespace cloth

@@ -2,6 +2,7 @@
 
 #include "data/cloth_state.h"
 #include "data/garment.h"
+#include "gnn/physics/block_pattern.h"
 
 namespace cloth {
 
@@ -23,6 +24,8 @@ class InertiaEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// Adds the Hessian (N/m) to the values of a matrix of `pattern`.
+    void add_hessian(const BlockPattern& pattern, double* values) const;
 
  private:
     const Garment* m_garment;

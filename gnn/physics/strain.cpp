@@ -1,6 +1,7 @@
 #include "gnn/physics/strain.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "gnn/physics/element_block.h"
 
@@ -98,6 +99,118 @@ double StrainEnergy::value(const Points& x) const {
 
 double StrainEnergy::add_gradient(const Points& x, Points& gradient) const {
     return accumulate<true>(x.data(), gradient.data());
+}
+
+namespace {
+
+/// A deformation gradient F (3 x 2) in its own axes: F = sigma0 u0 v0^T + sigma1 u1 v1^T.
+struct Axes {
+    Eigen::Matrix3d u;  ///< columns u0, u1 and the normal
+    Eigen::Matrix2d v;  ///< columns v0, v1
+    Eigen::Vector2d sigma;
+};
+
+/// Left axes of F v; where F collapses, any that complete an orthonormal frame.
+Eigen::Matrix3d left_axes(const Vec3& p, const Vec3& q) {
+    const double tiny = 1e-12;
+    Eigen::Matrix3d u;
+    u.col(0) = p.norm() > tiny ? Vec3(p.normalized()) : Vec3(Vec3::UnitX());
+    const Vec3 rest = q - u.col(0).dot(q) * u.col(0);
+    u.col(1) = rest.norm() > tiny ? Vec3(rest.normalized()) : u.col(0).unitOrthogonal();
+    u.col(2) = u.col(0).cross(u.col(1));
+    return u;
+}
+
+/// Singular values by the eigenvectors of the symmetric 2 x 2 matrix F^T F, larger value first.
+Axes principal_axes(const Eigen::Matrix<double, 3, 2>& f) {
+    const Eigen::Matrix2d c = f.transpose() * f;
+    const double angle = 0.5 * std::atan2(2.0 * c(0, 1), c(0, 0) - c(1, 1));
+    Axes axes;
+    axes.v << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    const Eigen::Matrix<double, 3, 2> fv = f * axes.v;
+    axes.u = left_axes(fv.col(0), fv.col(1));
+    axes.sigma << fv.col(0).norm(), fv.col(1).norm();
+    return axes;
+}
+
+/// The Hessian of the energy density with respect to F (N/m), diagonal but for the stretches when
+/// written in the principal axes.
+struct PrincipalStiffness {
+    Eigen::Matrix2d stretch;  ///< of sigma0 and sigma1
+    double twist, flip;       ///< of (u1 v0 - u0 v1) / sqrt 2 and (u1 v0 + u0 v1) / sqrt 2
+    Eigen::Vector2d bend;     ///< of n v0 and n v1: the second Piola-Kirchhoff stress
+
+    void project();
+};
+
+void PrincipalStiffness::project() {
+    twist = std::max(0.0, twist);
+    flip = std::max(0.0, flip);
+    bend = bend.cwiseMax(0.0);
+    const double mean = 0.5 * (stretch(0, 0) + stretch(1, 1));
+    const double half = 0.5 * (stretch(0, 0) - stretch(1, 1));
+    const double radius = std::hypot(half, stretch(0, 1));
+    if (mean - radius >= 0.0) return;
+    // Only the larger eigenvalue stays: lambda w w^T with w along (half + radius, stretch01).
+    Eigen::Vector2d w(half + radius, stretch(0, 1));
+    if (w.squaredNorm() < 1e-20 * radius * radius) w = Eigen::Vector2d(0.0, 1.0);
+    w.normalize();
+    stretch = std::max(0.0, mean + radius) * w * w.transpose();
+}
+
+/// For stresses s_i = 2 mu g_i + lambda (g_0 + g_1), g_i = (sigma_i^2 - 1) / 2, the eigenvalues
+/// (sigma_0 s_0 +- sigma_1 s_1) / (sigma_0 +- sigma_1) need no division.
+PrincipalStiffness principal_stiffness(const Eigen::Vector2d& sigma, const Fabric& fabric) {
+    const double g0 = 0.5 * (sigma[0] * sigma[0] - 1.0), g1 = 0.5 * (sigma[1] * sigma[1] - 1.0);
+    const double s0 = 2.0 * fabric.mu * g0 + fabric.lambda * (g0 + g1);
+    const double s1 = 2.0 * fabric.mu * g1 + fabric.lambda * (g0 + g1);
+    const double longitudinal = fabric.longitudinal();
+    const double coupling = fabric.lambda * sigma[0] * sigma[1];
+    PrincipalStiffness h;
+    h.stretch << s0 + longitudinal * sigma[0] * sigma[0], coupling, coupling,
+        s1 + longitudinal * sigma[1] * sigma[1];
+    h.twist = 0.5 * (s0 + s1) + 0.5 * fabric.mu * std::pow(sigma[0] - sigma[1], 2);
+    h.flip = 0.5 * (s0 + s1) + 0.5 * fabric.mu * std::pow(sigma[0] + sigma[1], 2);
+    h.bend << s0, s1;
+    return h;
+}
+
+/// Block of two corners whose shape functions have the gradients p and q in the axes v (1/m).
+Eigen::Matrix3d corner_block(const PrincipalStiffness& h, const Eigen::Vector2d& p,
+                             const Eigen::Vector2d& q) {
+    const double sum = 0.5 * (h.flip + h.twist), difference = 0.5 * (h.flip - h.twist);
+    Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+    block(0, 0) = h.stretch(0, 0) * p[0] * q[0] + sum * p[1] * q[1];
+    block(1, 1) = h.stretch(1, 1) * p[1] * q[1] + sum * p[0] * q[0];
+    block(0, 1) = h.stretch(0, 1) * p[0] * q[1] + difference * p[1] * q[0];
+    block(1, 0) = h.stretch(0, 1) * p[1] * q[0] + difference * p[0] * q[1];
+    block(2, 2) = h.bend[0] * p[0] * q[0] + h.bend[1] * p[1] * q[1];
+    return block;
+}
+
+}  // namespace
+
+void StrainEnergy::add_hessian(const Points& x, const BlockPattern& pattern, HessianKind kind,
+                               double* values) const {
+    for (size_t f = 0; f < m_area.size(); ++f) {
+        const auto face = m_garment->rest().faces.row(static_cast<Eigen::Index>(f));
+        Eigen::Matrix<double, 3, 2> ds;
+        ds << (x.row(face[1]) - x.row(face[0])).transpose(),
+            (x.row(face[2]) - x.row(face[0])).transpose();
+        Eigen::Matrix2d inverse;
+        inverse << m_inverse00[f], m_inverse01[f], 0.0, m_inverse11[f];
+        const Axes axes = principal_axes(ds * inverse);
+        PrincipalStiffness stiffness = principal_stiffness(axes.sigma, m_garment->fabric());
+        if (kind == HessianKind::projected) stiffness.project();
+        Eigen::Matrix<double, 2, 3> shape;  // gradients of the corners' shape functions
+        shape.rightCols<2>() = axes.v.transpose() * inverse.transpose();
+        shape.col(0) = -shape.col(1) - shape.col(2);
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                add_block(values, pattern.face(f)[static_cast<size_t>(3 * i + j)],
+                          m_area[f] * axes.u * corner_block(stiffness, shape.col(i), shape.col(j)) *
+                              axes.u.transpose());
+    }
 }
 
 }  // namespace cloth

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "data/garment.h"
+#include "gnn/physics/block_pattern.h"
 
 namespace cloth {
 
@@ -22,6 +23,9 @@ class StrainEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// Adds the Hessian (N/m) to the values of a matrix of `pattern`. The projection is analytic.
+    void add_hessian(const Points& x, const BlockPattern& pattern, HessianKind kind,
+                     double* values) const;
 
  private:
     template <bool with_gradient>
