@@ -249,6 +249,20 @@ CLOTH_INLINE void backward(const MessageBlockWeights& w, const MessageBlockRows&
     }
 }
 
+template <int Block>
+CLOTH_INLINE void dense(int rows, int in, int out, const float* x, const float* weight,
+                        const float* bias, bool with_relu, float* y, MessageBlockScratch& scratch) {
+    const size_t needed = static_cast<size_t>(in) * static_cast<size_t>(out);
+    if (scratch.size() < needed) scratch.resize(needed);
+    transpose(weight, out, in, scratch.data());
+    if (bias)
+        fill_rows(rows, out, bias, y);
+    else
+        std::memset(y, 0, sizeof(float) * static_cast<size_t>(rows) * static_cast<size_t>(out));
+    kernels::multiply<Block>(rows, in, out, x, in, scratch.data(), out, y, out);
+    if (with_relu) relu(rows * out, y);
+}
+
 #if defined(__x86_64__)
 #define CLOTH_AVX512 __attribute__((target("avx512f,avx512bw,avx512dq,avx512vl")))
 
@@ -261,6 +275,12 @@ CLOTH_AVX512 void backward_avx512(const MessageBlockWeights& w, const MessageBlo
                                   const float* d_out, const float* d_sum,
                                   const MessageBlockGradients& g, MessageBlockScratch& scratch) {
     backward<8>(w, rows, d_out, d_sum, g, scratch);
+}
+
+CLOTH_AVX512 void dense_avx512(int rows, int in, int out, const float* x, const float* weight,
+                               const float* bias, bool with_relu, float* y,
+                               MessageBlockScratch& scratch) {
+    dense<8>(rows, in, out, x, weight, bias, with_relu, y, scratch);
 }
 
 bool has_avx512() {
@@ -288,6 +308,14 @@ void message_block_backward(const MessageBlockWeights& weights, const MessageBlo
     if (has_avx512()) return backward_avx512(weights, rows, d_out, d_sum, gradients, scratch);
 #endif
     backward<4>(weights, rows, d_out, d_sum, gradients, scratch);
+}
+
+void dense_layer(int rows, int in, int out, const float* x, const float* weight, const float* bias,
+                 bool with_relu, float* y, MessageBlockScratch& scratch) {
+#if defined(__x86_64__)
+    if (has_avx512()) return dense_avx512(rows, in, out, x, weight, bias, with_relu, y, scratch);
+#endif
+    dense<4>(rows, in, out, x, weight, bias, with_relu, y, scratch);
 }
 
 void message_block_forward_plain(const MessageBlockWeights& w, const MessageBlockRows& rows,

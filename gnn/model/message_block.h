@@ -64,6 +64,14 @@ void message_block_backward(const MessageBlockWeights& weights, const MessageBlo
                             const float* d_out, const float* d_sum,
                             const MessageBlockGradients& gradients, MessageBlockScratch& scratch);
 
+/// y = x W' + b, with relu if asked for: one layer for rows that need no fusion.
+/// @param x       (rows x in)
+/// @param weight  (out x in); out a multiple of 16
+/// @param bias    (out), or null
+/// @param y       (rows x out)
+void dense_layer(int rows, int in, int out, const float* x, const float* weight, const float* bias,
+                 bool with_relu, float* y, MessageBlockScratch& scratch);
+
 /// The same forward pass as plain loops: the oracle of the tests.
 void message_block_forward_plain(const MessageBlockWeights& weights, const MessageBlockRows& rows,
                                  float* out, float* sum);

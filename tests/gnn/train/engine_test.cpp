@@ -1,0 +1,133 @@
+// The engine must compute the same function as the LibTorch network, for every variant.
+
+#include "gnn/model/engine.h"
+
+#include <gtest/gtest.h>
+
+#include "collision/proximity.h"
+#include "data/sheet.h"
+#include "gnn/physics/guess.h"
+#include "gnn/train/network.h"
+#include "gnn/train/torch_predictor.h"
+
+using namespace cloth;
+
+namespace {
+
+/// A sheet that moves and partly touches a sphere.
+struct EngineScene {
+    explicit EngineScene(const ModelConfig& config, int vertices = 500, bool with_sphere = true)
+        : garment("sheet", make_sheet(0.6, 0.5, vertices), Fabric::soft_cotton(), {0, 1}),
+          graph(build_cloth_graph(garment, config.graph_settings())) {
+        ClothState state = ClothState::at_rest(garment);
+        for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+            state.x.row(i) *= 1.0 + 0.05 * std::sin(static_cast<double>(i));
+            state.v.row(i) = Vec3(0.1, -0.5, 0.2 * std::cos(static_cast<double>(i))).transpose();
+        }
+        Boundary boundary;
+        boundary.pin_targets = garment.rest().vertices.topRows(2);
+        if (with_sphere) {
+            Obstacle sphere;
+            sphere.shape = ObstacleShape::sphere;
+            sphere.radius = 0.2;
+            sphere.pose0.translation() = sphere.pose1.translation() = Vec3(0, -0.21, 0);
+            boundary.obstacles.push_back(sphere);
+        }
+        SurfaceContacts contacts;
+        Proximity().query(state.x, boundary, contacts);
+        IncrementalPotential potential(garment);
+        potential.begin_step(state, boundary, contacts, config.dt);
+        Points base;
+        starting_guess(garment, state, boundary, contacts, config.dt, 4e-3, base);
+        FeatureBuilder(garment, graph, config.features)
+            .build(state, boundary, potential, base, features);
+    }
+
+    Garment garment;
+    ClothGraph graph;
+    Features features;
+};
+
+ModelConfig small_config(const std::string& variant, int width = 32) {
+    ModelConfig config = ModelConfig::variant_named(variant);
+    config.width = width;
+    config.steps = 5;
+    return config;
+}
+
+std::shared_ptr<const Weights> random_weights(const ModelConfig& config) {
+    return std::make_shared<const Weights>(
+        Network(config, torch::kCPU, /*seed=*/7).export_weights());
+}
+
+Points predict(Predictor& predictor, const EngineScene& scene) {
+    Points out;
+    predictor.predict(scene.graph, scene.features, out);
+    return out;
+}
+
+}  // namespace
+
+class EngineVariant : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(EngineVariant, EqualsLibTorch) {
+    for (const bool with_sphere : {true, false})
+        for (const bool forces : {true, false}) {
+            ModelConfig config = small_config(GetParam());
+            config.features.force_features = forces;
+            const EngineScene scene(config, 500, with_sphere);
+            ASSERT_EQ(scene.features.any_world, with_sphere);
+            const auto weights = random_weights(config);
+            Engine engine(weights);
+            const Points expected = predict(*make_torch_predictor(*weights), scene);
+            const Points actual = predict(engine, scene);
+            EXPECT_LT((actual - expected).norm(), 1e-5 * expected.norm());
+        }
+}
+
+TEST_P(EngineVariant, SameBitsForAnyThreadCountAndTwice) {
+    const ModelConfig config = small_config(GetParam());
+    const EngineScene scene(config);
+    const auto weights = random_weights(config);
+    Engine one(weights, {1}), three(weights, {3});
+    const Points first = predict(one, scene);
+    EXPECT_EQ(first, predict(one, scene));
+    EXPECT_EQ(first, predict(three, scene));
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, EngineVariant,
+                         ::testing::Values("baseline", "sampling", "reduction", "fast"));
+
+TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
+    const ModelConfig config = small_config("baseline", 48);
+    const EngineScene scene(config, 130);
+    const auto weights = random_weights(config);
+    Engine engine(weights);
+    const Points expected = predict(*make_torch_predictor(*weights), scene);
+    EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(Engine, FollowsAChangeOfGarment) {
+    const ModelConfig config = small_config("fast");
+    const auto weights = random_weights(config);
+    Engine engine(weights), fresh(weights);
+    const EngineScene small(config, 120), large(config, 700);
+    predict(engine, large);
+    EXPECT_EQ(predict(engine, small), predict(fresh, small));
+}
+
+TEST(Engine, RefusesWhatItCannotRun) {
+    EXPECT_THROW(Engine(random_weights(small_config("fast", 20))), std::invalid_argument);
+    ModelConfig config = small_config("fast");
+    config.hidden_layers = 1;
+    EXPECT_THROW(Engine{random_weights(config)}, std::invalid_argument);
+}
+
+TEST(Engine, FeaturesOfAnotherGarmentGiveNoFiniteNumber) {
+    const ModelConfig config = small_config("fast");
+    const EngineScene scene(config, 120), other(config, 200);
+    Engine engine(random_weights(config));
+    Points out;
+    engine.predict(scene.graph, other.features, out);
+    EXPECT_FALSE(out.allFinite());
+}
