@@ -141,7 +141,7 @@ void record_shape(const ComparisonScene& scene, const Boundary& boundary,
     const double body_height = boundary.obstacles.empty()
                                    ? height
                                    : boundary.obstacles[0].x1.col(1).mean() -
-                                         scene.body().body().rest().vertices.col(1).mean();
+                                         scene.body().body().rest().col(1).mean();
     if (std::abs(height - body_height) > 0.4) fail(rollout, frame, "slid off the body");
 }
 
