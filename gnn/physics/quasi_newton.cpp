@@ -73,6 +73,7 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
         return false;
     if (!m_matrix.prepare(garment, potential.dt())) return false;
     m_history.clear();
+    m_contacts.begin_step(potential, m_matrix.row_of());
     report.energy = potential.value_gradient(x, m_all_gradient);
     report.evaluations = 1;
     m_matrix.gather(m_all_gradient, m_gradient);
@@ -106,8 +107,9 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
 void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
     m_right_side = -m_gradient;
     m_history.first_loop(m_right_side);
-    if (m_settings.contact_cg_iterations > 0 && m_matrix.set_contacts(potential, x))
-        m_matrix.solve_with_contacts(m_right_side, m_settings.contact_cg_iterations, m_direction);
+    m_contacts.linearise(potential, x);
+    if (m_settings.contact_cg_iterations > 0 && m_contacts.active())
+        m_matrix.solve(m_right_side, m_contacts, m_settings.contact_cg_iterations, m_direction);
     else
         m_matrix.solve(m_right_side, m_direction);
     m_history.second_loop(m_direction);
@@ -122,13 +124,14 @@ bool QuasiNewton::line_search(const IncrementalPotential& potential, Points& x,
     for (int k = 0; k < max_backtracks; ++k) {
         m_trial = x;
         m_matrix.add_scaled(step, m_direction, m_trial);
+        m_contacts.limit_depth(m_trial);
         const double energy = potential.value_gradient(m_trial, m_all_gradient);
         ++report.evaluations;
         if (energy <= report.energy + sufficient_decrease * step * slope) {
             m_matrix.gather(m_all_gradient, m_next_gradient);
             if (m_next_gradient.allFinite()) {
+                m_matrix.gather_difference(m_trial, x, m_direction);
                 x.swap(m_trial);
-                m_direction *= step;
                 report.energy = energy;
                 return true;
             }

@@ -10,8 +10,8 @@ struct QuasiNewtonSettings {
     int iterations = 10;     ///< at most, 0 to 10000; each costs about one energy and one solve
     double tolerance = 0.0;  ///< stop at this residual, 0 to 1; 0: run all iterations
     int history = 8;         ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
-    int contact_cg_iterations = 5;  ///< solves of P + contact Hessian take so many iterations, 0 to
-                                    ///< 50; 0: contact stays out of the matrix
+    int contact_cg_iterations = 5;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
+                                    ///< contact stays out of the matrix
     PotentialSettings potential;    ///< for steppers, which make the potential themselves
 };
 
@@ -28,7 +28,7 @@ struct MinimiseReport {
 /// Minimises the incremental potential with one constant matrix P (see QuasiNewtonMatrix) in the
 /// Hessian's place, an L-BFGS history that learns the difference, and a backtracking line search
 /// (Liu, Bouaziz and Kavan 2017, "Quasi-Newton methods for real-time simulation of hyperelastic
-/// materials", algorithm 1).
+/// materials", algorithm 1). Obstacles, which P does not know, come in by a ContactModel.
 ///
 ///     QuasiNewton solver(garment, {});
 ///     potential.begin_step(state, boundary, contacts, dt);
@@ -68,6 +68,7 @@ class QuasiNewton {
 
     QuasiNewtonSettings m_settings;
     QuasiNewtonMatrix m_matrix;
+    ContactModel m_contacts;
     LbfgsHistory m_history;
     Points m_all_gradient, m_trial;                                 ///< |V| x 3
     Points m_gradient, m_next_gradient, m_direction, m_right_side;  ///< free vertices (n x 3)

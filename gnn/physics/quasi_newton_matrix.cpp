@@ -44,8 +44,10 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const TriMesh& rest) {
 QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
     : m_vertex_count(garment.vertex_count()), m_pins(garment.pins()) {
     Triplets selection;
+    m_row_of.assign(static_cast<size_t>(m_vertex_count), -1);
     for (int vertex = 0; vertex < m_vertex_count; ++vertex) {
         if (garment.is_pinned()[static_cast<size_t>(vertex)]) continue;
+        m_row_of[static_cast<size_t>(vertex)] = static_cast<int>(m_free.size());
         selection.emplace_back(static_cast<int>(m_free.size()), vertex, 1.0);
         m_free.push_back(vertex);
     }
@@ -54,7 +56,6 @@ QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
     m_laplacian = select * cotangent_laplacian(garment.rest()) * select.transpose();
     for (Points* array : {&m_residual, &m_preconditioned, &m_direction, &m_product, &m_p_direction})
         array->resize(free_count(), 3);
-    m_contacts.reserve(m_free.size());
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
@@ -80,6 +81,14 @@ void QuasiNewtonMatrix::gather(const Points& all, Points& free) const {
         free.row(row) = all.row(m_free[static_cast<size_t>(row)]);
 }
 
+void QuasiNewtonMatrix::gather_difference(const Points& a, const Points& b, Points& free) const {
+    free.resize(free_count(), 3);
+    for (Eigen::Index row = 0; row < free_count(); ++row) {
+        const int vertex = m_free[static_cast<size_t>(row)];
+        free.row(row) = a.row(vertex) - b.row(vertex);
+    }
+}
+
 void QuasiNewtonMatrix::scatter(const Points& free, Points& all) const {
     all.setZero(m_vertex_count, 3);
     add_scaled(1.0, free, all);
@@ -90,32 +99,14 @@ void QuasiNewtonMatrix::add_scaled(double scale, const Points& free, Points& all
         all.row(m_free[static_cast<size_t>(row)]) += scale * free.row(row);
 }
 
-bool QuasiNewtonMatrix::set_contacts(const IncrementalPotential& potential, const Points& x) {
-    m_contacts.clear();
-    const SurfaceContacts& near = potential.contacts();
-    const PotentialSettings& settings = potential.settings();
-    for (Eigen::Index row = 0; row < free_count(); ++row) {
-        const int i = m_free[static_cast<size_t>(row)];
-        if (!near.has(i)) continue;
-        const Vec3 normal = near.normal1.row(i);
-        const double gap = settings.contact_distance - (x.row(i) - near.point1.row(i)).dot(normal);
-        if (gap > 0.0)
-            m_contacts.push_back(
-                {static_cast<int>(row), 6.0 * settings.contact_weight * gap, normal});
-    }
-    return !m_contacts.empty();
-}
-
-void QuasiNewtonMatrix::add_contact_product(const Points& direction, Points& product) const {
-    for (const Contact& contact : m_contacts) {
-        const double along = direction.row(contact.row).dot(contact.normal);
-        product.row(contact.row) += contact.stiffness * along * contact.normal.transpose();
-    }
-}
-
-void QuasiNewtonMatrix::solve_with_contacts(const Points& b, int iterations, Points& out) {
+void QuasiNewtonMatrix::solve(const Points& b, ContactModel& contacts, int iterations,
+                              Points& out) const {
     m_residual = b;
     solve(m_residual, m_preconditioned);
+    if (!contacts.anticipate(m_preconditioned)) {
+        out = m_preconditioned;
+        return;
+    }
     m_direction = m_preconditioned;
     // P times the direction follows from the residuals, so that P itself is never multiplied.
     m_p_direction = m_residual;
@@ -123,7 +114,7 @@ void QuasiNewtonMatrix::solve_with_contacts(const Points& b, int iterations, Poi
     out.setZero(b.rows(), 3);
     for (int k = 0; power > 0.0; ++k) {
         m_product = m_p_direction;
-        add_contact_product(m_direction, m_product);
+        contacts.add_product(m_direction, m_product);
         const double step = power / dot(m_direction, m_product);
         out += step * m_direction;
         if (k + 1 >= iterations) break;

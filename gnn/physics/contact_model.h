@@ -1,0 +1,61 @@
+#pragma once
+
+#include <vector>
+
+#include "gnn/physics/incremental_potential.h"
+
+namespace cloth {
+
+/// What the obstacles add to the constant matrix of the quasi-Newton method: a symmetric positive
+/// semi-definite 3 x 3 block for each vertex in contact or held by friction,
+///
+///     contact    6 w depth n n'                         depth = eps - d > 0
+///     friction   mu N / sqrt(s^2 + |u|^2) (I - n n')
+///
+/// Contact is flat at depth 0, where the starting guess leaves the vertices, so the tangent
+/// stiffness alone lets the next step fall through the surface. Two remedies: vertices that a plain
+/// step would press deeper get the stiffness of the depth they are heading for (up to a limit), and
+/// a trial point is never deeper than a limit beyond the point it comes from.
+class ContactModel {
+ public:
+    /// Takes the contacts and sliders of this step. @param row_of  |V|: free row, -1 for a pin
+    void begin_step(const IncrementalPotential& potential, const std::vector<int>& row_of);
+
+    /// Linearises at x (|V| x 3).
+    void linearise(const IncrementalPotential& potential, const Points& x);
+
+    /// Stiffens contacts that `step` (free, n x 3), a step without these blocks, would press
+    /// deeper. Returns whether any block is not zero.
+    bool anticipate(const Points& step);
+
+    /// product += blocks * direction (free, n x 3).
+    void add_product(const Points& direction, Points& product) const;
+
+    /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
+    void limit_depth(Points& trial) const;
+
+    /// Whether any obstacle is near enough to matter.
+    bool active() const { return !m_contacts.empty() || !m_sliders.empty(); }
+
+ private:
+    struct Contact {
+        Eigen::Index vertex;
+        int row;
+        Vec3 normal;
+        double surface;          ///< eps + p . n: depth is surface - x . n (m)
+        double depth = 0.0;      ///< at the point of linearisation, negative outside (m)
+        double stiffness = 0.0;  ///< (N/m)
+    };
+    struct Slider {
+        int row;
+        Vec3 normal;
+        double stiffness = 0.0;  ///< (N/m)
+    };
+
+    double m_weight = 0.0;  ///< w (N/m^2)
+    std::vector<Contact> m_contacts;
+    std::vector<Slider> m_sliders;
+    std::vector<size_t> m_slider_index;  ///< of the potential's friction().sliders()
+};
+
+}  // namespace cloth
