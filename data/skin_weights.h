@@ -31,7 +31,7 @@ struct BoneSegment {
 };
 
 struct HeatWeightSettings {
-    double heat = 1.0;         ///< 0.1 to 10: larger makes narrower transitions between joints
+    double heat = 3.0;         ///< 0.1 to 10: larger makes narrower transitions between joints
     int max_influences = 6;    ///< joints per vertex, 1 to 8
     double threshold = 0.005;  ///< weights below are dropped, 0 to 0.1
 };
