@@ -16,8 +16,8 @@ ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, dou
     : m_faces(&faces), m_radius(radius), m_vertices(vertices) {
     build_nodes();
     m_local.resize(static_cast<size_t>(vertices.rows()));
-    localize(1);
-    fit_leaves(1);
+    localize();
+    fit_leaves();
     fit_inner_nodes();
 }
 
@@ -42,33 +42,39 @@ void ClosestFaceTree::build_nodes() {
     const std::vector<BinaryNode> binary = build_fcl_hierarchy(m_vertices, *m_faces);
     if (binary.empty()) return;
     std::vector<int> roots{0};  // the binary node that each wide node replaces
+    std::vector<size_t> depths{1};
     for (size_t i = 0; i < roots.size(); ++i) {
         Node node;
-        std::fill_n(&node.low[0][0], 3 * width, infinity);
-        std::fill_n(&node.high[0][0], 3 * width, -infinity);
+        for (int k = 0; k < 3; ++k) {
+            node.low[k].setConstant(infinity);
+            node.high[k].setConstant(-infinity);
+        }
         std::fill_n(node.child, width, std::numeric_limits<std::int32_t>::min());
         int slot = 0;
         for (const int child : wide_children(binary, roots[i])) {
             const BinaryNode& source = binary[static_cast<size_t>(child)];
             node.child[slot++] = source.left < 0 ? ~source.face : static_cast<int>(roots.size());
-            if (source.left >= 0) roots.push_back(child);
+            if (source.left < 0) continue;
+            roots.push_back(child);
+            depths.push_back(depths[i] + 1);
         }
         m_nodes.push_back(node);
     }
+    m_stack_size = width * depths.back();  // breadth first: the last node is one of the deepest
 }
 
-void ClosestFaceTree::refit(const Points& vertices, int threads) {
+void ClosestFaceTree::refit(const Points& vertices) {
     const size_t bytes = static_cast<size_t>(vertices.size()) * sizeof(double);
     if (std::memcmp(vertices.data(), m_vertices.data(), bytes) == 0) return;
     std::memcpy(m_vertices.data(), vertices.data(), bytes);
-    localize(threads);
-    fit_leaves(threads);
+    localize();
+    fit_leaves();
     fit_inner_nodes();
 }
 
 /// Single-precision vertices relative to the centre: far from the world's origin the boxes stay
 /// tight. Coordinates of 2^-24 relative precision are off by less than the padding.
-void ClosestFaceTree::localize(int threads) {
+void ClosestFaceTree::localize() {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
     for (Eigen::Index i = 0; i < m_vertices.rows(); ++i)
         for (int k = 0; k < 3; ++k) {
@@ -82,19 +88,14 @@ void ClosestFaceTree::localize(int threads) {
     const double extent = (high - low).norm() + m_radius;
     m_padding = std::isfinite(extent) ? static_cast<float>(extent * 0x1p-21) : infinity;
 
-    const int count = static_cast<int>(m_vertices.rows());
-#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
-    for (int i = 0; i < count; ++i) {
+    for (Eigen::Index i = 0; i < m_vertices.rows(); ++i) {
         const Vec3 x = m_vertices.row(i).transpose() - m_origin;
         m_local[static_cast<size_t>(i)] << x.cast<float>().array(), 0.0f;
     }
 }
 
-void ClosestFaceTree::fit_leaves(int threads) {
-    const int count = static_cast<int>(m_nodes.size());
-#pragma omp parallel for num_threads(threads) schedule(static) if (threads > 1)
-    for (int i = 0; i < count; ++i) {
-        Node& node = m_nodes[static_cast<size_t>(i)];
+void ClosestFaceTree::fit_leaves() {
+    for (Node& node : m_nodes)
         for (int slot = 0; slot < width; ++slot) {
             const int face = ~node.child[slot];
             if (face < 0 || face >= m_faces->rows()) continue;
@@ -108,7 +109,6 @@ void ClosestFaceTree::fit_leaves(int threads) {
                 node.high[k][slot] = finite ? high[k] : -infinity;
             }
         }
-    }
 }
 
 /// Children come after their parents, so one pass from the back is bottom-up.
@@ -119,8 +119,8 @@ void ClosestFaceTree::fit_inner_nodes() {
             if (node.child[slot] < 0) continue;
             const Node& child = m_nodes[static_cast<size_t>(node.child[slot])];
             for (int k = 0; k < 3; ++k) {
-                node.low[k][slot] = *std::min_element(child.low[k], child.low[k] + width);
-                node.high[k][slot] = *std::max_element(child.high[k], child.high[k] + width);
+                node.low[k][slot] = child.low[k].minCoeff();
+                node.high[k][slot] = child.high[k].maxCoeff();
             }
         }
     }
@@ -137,20 +137,34 @@ void ClosestFaceTree::try_face(const Vec3& q, int face, FaceHit& best) const {
 }
 
 /// Squared distances of a point to the eight boxes of a node.
-template <class Node, class Lanes>
-static void box_distances(const Node& node, const Eigen::Vector3f& q, Lanes& squared) {
-    for (int slot = 0; slot < ClosestFaceTree::width; ++slot) squared[slot] = 0.0f;
+ClosestFaceTree::Eight ClosestFaceTree::box_distances(const Node& node, const Eigen::Vector3f& q) {
+    Eight sum = Eight::Zero();
     for (int k = 0; k < 3; ++k)
-        for (int slot = 0; slot < ClosestFaceTree::width; ++slot) {
-            const float below = node.low[k][slot] - q[k], above = q[k] - node.high[k][slot];
-            const float outside = std::max(std::max(below, above), 0.0f);
-            squared[slot] += outside * outside;
-        }
+        sum += (node.low[k] - q[k]).max(q[k] - node.high[k]).max(0.0f).square();
+    return sum;
 }
 
 /// A bound for single-precision squared distances that keeps everything up to `squared`.
 static float widened(double squared) {
     return static_cast<float>(squared) * 1.000002f + std::numeric_limits<float>::min();
+}
+
+/// Appends the children within the bound to the stack, the nearest last, and returns its new end.
+ClosestFaceTree::Entry* ClosestFaceTree::push_children(const Node& node, const Eigen::Vector3f& q,
+                                                       float bound, Entry* end) {
+    const Eight squared = box_distances(node, q);
+    Entry* const first = end;
+    for (int slot = 0; slot < width; ++slot) {  // no branch: which ones pass is unpredictable
+        *end = {node.child[slot], squared[slot]};
+        end += squared[slot] <= bound;
+    }
+    for (Entry* entry = first + 1; entry < end; ++entry) {  // insertion sort: one to three entries
+        const Entry moved = *entry;
+        Entry* place = entry;
+        for (; place > first && place[-1].squared < moved.squared; --place) *place = place[-1];
+        *place = moved;
+    }
+    return end;
 }
 
 FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& stack) const {
@@ -161,29 +175,16 @@ FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& 
     const Eigen::Vector3f local = (q - m_origin).cast<float>();
     float bound = widened(best.squared);
 
-    stack.push_back({0, 0.0f});
-    while (!stack.empty()) {
-        const Entry entry = stack.back();
-        stack.pop_back();
+    if (stack.size() < m_stack_size) stack.resize(m_stack_size);
+    Entry* end = push_children(m_nodes[0], local, bound, stack.data());
+    while (end != stack.data()) {
+        const Entry entry = *--end;
         if (entry.squared > bound) continue;
-        if (entry.child < 0) {
-            if (~entry.child == hint) continue;
+        if (entry.child >= 0) {
+            end = push_children(m_nodes[static_cast<size_t>(entry.child)], local, bound, end);
+        } else if (~entry.child != hint) {
             try_face(q, ~entry.child, best);
             bound = widened(best.squared);
-            continue;
-        }
-        const Node& node = m_nodes[static_cast<size_t>(entry.child)];
-        alignas(32) Lanes squared;
-        box_distances(node, local, squared);
-        const size_t first = stack.size();
-        for (int slot = 0; slot < width; ++slot) {
-            if (!(squared[slot] <= bound)) continue;
-            const Entry found{node.child[slot], squared[slot]};
-            size_t place = stack.size();  // the nearest child ends on top
-            stack.push_back(found);
-            for (; place > first && stack[place - 1].squared < found.squared; --place)
-                stack[place] = stack[place - 1];
-            stack[place] = found;
         }
     }
     return best;

@@ -36,29 +36,32 @@ class ClosestFaceTree {
     ClosestFaceTree(const Points& vertices, const Faces& faces, double radius);
 
     /// Moves the mesh (same faces). Cheap if `vertices` are those of the last call.
-    void refit(const Points& vertices, int threads);
+    void refit(const Points& vertices);
 
     /// Closest face within `radius` of q. Faces without area or with coordinates that are not
     /// finite are no candidates (their edges belong to their neighbours too).
     /// @param hint   a face that is probably close, or -1; it saves time
-    /// @param stack  scratch memory, empty
+    /// @param stack  scratch memory
     FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack) const;
 
     const Points& vertices() const { return m_vertices; }
     const Faces& faces() const { return *m_faces; }
 
  private:
-    using Lanes = float[width];
+    using Eight = Eigen::Array<float, width, 1>;
+    using Vec4f = Eigen::Array4f;
     struct alignas(32) Node {
-        Lanes low[3], high[3];      ///< boxes of the children; empty boxes are +inf to -inf
+        Eight low[3], high[3];      ///< boxes of the children; empty boxes are +inf to -inf
         std::int32_t child[width];  ///< a node, or ~face
     };
-    using Vec4f = Eigen::Array4f;
 
     void build_nodes();
-    void localize(int threads);
-    void fit_leaves(int threads);
+    void localize();
+    void fit_leaves();
     void fit_inner_nodes();
+    static Eight box_distances(const Node& node, const Eigen::Vector3f& q);
+    static Entry* push_children(const Node& node, const Eigen::Vector3f& q, float bound,
+                                Entry* end);
     void try_face(const Vec3& q, int face, FaceHit& best) const;
 
     const Faces* m_faces;
@@ -68,6 +71,7 @@ class ClosestFaceTree {
     float m_padding = 0.0f;
     std::vector<Vec4f, Eigen::aligned_allocator<Vec4f>> m_local;  ///< |V|: relative to the origin
     std::vector<Node> m_nodes;                                    ///< parents before their children
+    size_t m_stack_size = 0;                                      ///< enough for any query
 };
 
 }  // namespace cloth

@@ -91,42 +91,47 @@ static double corner_angle(const std::array<Vec3, 3>& corners, int pivot) {
     return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
-SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const {
-    const Points& x = m_tree.vertices();
-    std::array<int, 3> weld;     // of the corners of the hit face
-    int pivot = -1, other = -1;  // the feature's welded vertices; other is -1 at a vertex
+int MeshSurface::corner_at(int face, int vertex) const {
     for (int k = 0; k < 3; ++k) {
-        weld[size_t(k)] = m_vertex_faces.welded((*m_faces)(hit.face, k));
-        if (hit.barycentric[k] != 0.0) (pivot < 0 ? pivot : other) = weld[size_t(k)];
+        const int corner = (*m_faces)(face, k);
+        if (corner == vertex) return k;
+        if (m_vertex_faces.welded(corner) == m_vertex_faces.welded(vertex) &&
+            m_tree.vertices().row(corner) == m_tree.vertices().row(vertex))
+            return k;
     }
+    return -1;
+}
+
+SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const {
+    int ends[2] = {-1, -1};  // the feature's vertices; the second is -1 at a vertex
+    double weights[2] = {0.0, 0.0};
+    for (int k = 0, end = 0; k < 3; ++k)
+        if (hit.barycentric[k] != 0.0) {
+            ends[end] = (*m_faces)(hit.face, k);
+            weights[end++] = hit.barycentric[k];
+        }
 
     int front = -1, back = -1;  // the faces most squarely before and behind the point
     double front_height = 0.0, back_height = 0.0, weighted = 0.0;
-    for (const int* face = m_vertex_faces.begin(pivot); face != m_vertex_faces.end(pivot); ++face) {
+    for (const int* face = m_vertex_faces.begin(ends[0]); face != m_vertex_faces.end(ends[0]);
+         ++face) {
+        const int pivot = corner_at(*face, ends[0]);
+        if (pivot < 0 || (ends[1] >= 0 && corner_at(*face, ends[1]) < 0)) continue;
         std::array<Vec3, 3> corners;
-        int pivot_corner = 0;
-        bool has_other = other < 0;
-        for (int k = 0; k < 3; ++k) {
-            const int vertex = (*m_faces)(*face, k);
-            corners[size_t(k)] = x.row(vertex);
-            if (m_vertex_faces.welded(vertex) == pivot) pivot_corner = k;
-            if (m_vertex_faces.welded(vertex) == other) has_other = true;
-        }
+        for (int k = 0; k < 3; ++k)
+            corners[size_t(k)] = m_tree.vertices().row((*m_faces)(*face, k));
         Vec3 normal;
-        if (!has_other || !triangle_normal(corners[0], corners[1], corners[2], normal)) continue;
+        if (!triangle_normal(corners[0], corners[1], corners[2], normal)) continue;
         const double height = normal.dot(away);
-        weighted += height * (other < 0 ? corner_angle(corners, pivot_corner) : 1.0);
+        weighted += height * (ends[1] < 0 ? corner_angle(corners, pivot) : 1.0);
         if (front < 0 || height > front_height) front = *face, front_height = height;
         if (back < 0 || height < back_height) back = *face, back_height = height;
     }
 
     const bool inside = weighted < 0.0;
     SurfaceHit result{inside ? back : front, Vec3::Zero(), signed_root(hit.squared, inside)};
-    for (int k = 0; k < 3; ++k)
-        for (int j = 0; j < 3; ++j)
-            if (m_vertex_faces.welded((*m_faces)(result.face, k)) == weld[size_t(j)] &&
-                hit.barycentric[j] != 0.0)
-                result.barycentric[k] = hit.barycentric[j];
+    for (const int end : {0, 1})
+        if (ends[end] >= 0) result.barycentric[corner_at(result.face, ends[end])] = weights[end];
     return result;
 }
 

@@ -20,9 +20,12 @@ class VertexFaces {
  public:
     VertexFaces(const Points& vertices, const Faces& faces);
 
-    int welded(int vertex) const { return m_weld[static_cast<size_t>(vertex)]; }
-    const int* begin(int welded) const { return m_faces.data() + m_first[size_t(welded)]; }
-    const int* end(int welded) const { return m_faces.data() + m_first[size_t(welded) + 1]; }
+    int welded(int vertex) const { return m_weld[size_t(vertex)]; }
+    /// The faces at a vertex: [begin, end), ascending.
+    const int* begin(int vertex) const { return m_faces.data() + m_first[size_t(welded(vertex))]; }
+    const int* end(int vertex) const {
+        return m_faces.data() + m_first[size_t(welded(vertex)) + 1];
+    }
 
  private:
     std::vector<int> m_weld;   ///< |V|: representative vertex
@@ -40,7 +43,7 @@ class MeshSurface {
  public:
     MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius);
 
-    void refit(const Points& vertices, int threads) { m_tree.refit(vertices, threads); }
+    void refit(const Points& vertices) { m_tree.refit(vertices); }
 
     SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack) const;
 
@@ -50,6 +53,8 @@ class MeshSurface {
  private:
     SurfaceHit on_face(const FaceHit& hit, const Vec3& away) const;
     SurfaceHit on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const;
+    /// The corner (0 to 2) of a face that is this vertex, or coincides with it across a seam; -1.
+    int corner_at(int face, int vertex) const;
 
     std::shared_ptr<const Faces> m_faces;
     ClosestFaceTree m_tree;

@@ -187,7 +187,7 @@ struct Proximity::Impl {
             CachedMesh& mesh = cached(obstacle, x);
             mesh.last_seen = queries;
             if (!mesh.surface || mesh.surface->vertex_count() != x.rows()) return;
-            mesh.surface->refit(x, thread_count());
+            mesh.surface->refit(x);
             target.surface = mesh.surface.get();
             target.hints = hints_for(mesh, count);
         }
@@ -207,13 +207,14 @@ struct Proximity::Impl {
         stacks.resize(std::max(stacks.size(), size_t(thread_count())));
     }
 
-    /// Calls store(i, nearest) for each point.
+    /// Calls store(i, nearest) for the given rows of x; null: for all of them.
     template <class Store>
-    void for_each_nearest(const Points& x, const Store& store) {
-        const int count = static_cast<int>(x.rows());
+    void for_each_nearest(const Points& x, const std::vector<int>* rows, const Store& store) {
+        const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
         const int threads = count < min_parallel || targets.empty() ? 1 : thread_count();
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
-        for (int i = 0; i < count; ++i) {
+        for (int at = 0; at < count; ++at) {
+            const int i = rows ? (*rows)[size_t(at)] : at;
             ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
             store(i, find_nearest(targets, x.row(i), size_t(i), settings.radius, stack));
         }
@@ -243,8 +244,17 @@ void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts
                       StepEnd chosen_at) {
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
-    m_impl->for_each_nearest(
-        x, [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+    m_impl->for_each_nearest(x, nullptr, [&](int i, const Nearest& nearest) {
+        store_row(nearest, chosen_at, i, contacts);
+    });
+}
+
+void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
+                           SurfaceContacts& contacts, StepEnd chosen_at) {
+    m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
+    m_impl->for_each_nearest(x, &rows, [&](int i, const Nearest& nearest) {
+        store_row(nearest, chosen_at, i, contacts);
+    });
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,
@@ -252,7 +262,7 @@ void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepE
     distance.resize(x.rows());
     m_impl->prepare(boundary, end, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
+        x, nullptr, [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
 }
 
 static void check_mesh(const std::string& name, const Obstacle& mesh) {

@@ -59,6 +59,11 @@ class Proximity {
     void query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
                StepEnd chosen_at = StepEnd::start);
 
+    /// Repeats a query for some rows of `x` only (ascending or not, each at most once); the other
+    /// rows of `contacts`, which has |V| rows from a query before, are left as they are.
+    void query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
+                    SurfaceContacts& contacts, StepEnd chosen_at = StepEnd::start);
+
     /// Signed distance (m) of `x` to the surfaces at one end of the step; +inf beyond the radius.
     void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
 

@@ -1,6 +1,8 @@
 #include "collision/resolve.h"
 
 #include <algorithm>
+#include <numeric>
+#include <vector>
 
 namespace cloth {
 
@@ -26,17 +28,19 @@ static Vec3 outward(const SurfaceContacts& contacts, Eigen::Index i, const Point
     return away * ((contacts.distance[i] < 0.0 ? -1.0 : 1.0) / length);
 }
 
-static int push_to_distance(const SurfaceContacts& contacts, double distance, Points& x) {
-    // A vertex that rounding leaves below the distance is not worth another iteration.
-    const double threshold = distance - 1e-9;
-    int moved = 0;
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        if (!contacts.has(i) || !(contacts.distance[i] < threshold)) continue;
+/// Keeps the rows whose distance is below `distance`; what rounding leaves below does not count.
+static void keep_too_close(const SurfaceContacts& contacts, double distance,
+                           std::vector<int>& rows) {
+    const auto is_fine = [&](int i) { return !(contacts.distance[i] < distance - 1e-9); };
+    rows.erase(std::remove_if(rows.begin(), rows.end(), is_fine), rows.end());
+}
+
+static void push_to_distance(const SurfaceContacts& contacts, double distance,
+                             const std::vector<int>& rows, Points& x) {
+    for (const int i : rows) {
         const Vec3 direction = outward(contacts, i, x);
         x.row(i) = contacts.point1.row(i) + distance * direction.transpose();
-        ++moved;
     }
-    return moved;
 }
 
 static double max_depth(const VectorX& distance) {
@@ -44,25 +48,28 @@ static double max_depth(const VectorX& distance) {
 }
 
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, int max_iterations) {
-    SurfaceContacts contacts;
-    return resolve_penetration(proximity, boundary, distance, x, contacts, max_iterations);
-}
-
-ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
                                   Points& x, SurfaceContacts& contacts, int max_iterations) {
     ResolveReport report;
     if (boundary.obstacles.empty()) return report;
-    for (;; ++report.iterations) {
-        proximity.query(x, boundary, contacts, StepEnd::end);
-        report.max_depth_after = max_depth(contacts.distance);
-        if (report.iterations == 0) report.max_depth_before = report.max_depth_after;
-        if (report.iterations == max_iterations) break;
-        const int moved = push_to_distance(contacts, distance, x);
-        report.moved += moved;
-        if (moved == 0) break;
+    proximity.query(x, boundary, contacts, StepEnd::end);
+    report.max_depth_before = max_depth(contacts.distance);
+    std::vector<int> rows(static_cast<size_t>(x.rows()));
+    std::iota(rows.begin(), rows.end(), 0);
+    keep_too_close(contacts, distance, rows);
+    report.moved = static_cast<int>(rows.size());
+    for (; !rows.empty() && report.iterations < max_iterations; ++report.iterations) {
+        push_to_distance(contacts, distance, rows, x);
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end);
+        keep_too_close(contacts, distance, rows);
     }
+    report.max_depth_after = max_depth(contacts.distance);
     return report;
+}
+
+ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
+                                  Points& x, int max_iterations) {
+    SurfaceContacts contacts;
+    return resolve_penetration(proximity, boundary, distance, x, contacts, max_iterations);
 }
 
 }  // namespace cloth

@@ -17,20 +17,20 @@ int project_out(const SurfaceContacts& contacts, double distance, Points& x);
 struct ResolveReport {
     double max_depth_before = 0.0;  ///< deepest vertex inside an obstacle
     double max_depth_after = 0.0;
-    int moved = 0;       ///< vertices moved, counted once per iteration
-    int iterations = 0;  ///< 0: no vertex was closer than the distance
+    int moved = 0;       ///< vertices that were closer than the distance
+    int iterations = 0;  ///< 0: there were none
 };
 
 /// The last safety of a step: queries the surfaces at t + dt and moves every vertex that is closer
 /// than `distance` (m, small: 0 to 1e-3) to that distance from its closest point, again if that
-/// brought it too close to another surface. Pinned vertices are moved as well; callers put them
-/// back.
-ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, int max_iterations = 3);
-
-/// The same without allocation: `contacts` is scratch memory, kept by the caller. Afterwards it
-/// holds the nearest points of `x` at t + dt (of obstacles, if there are any).
+/// brought it too close to another surface. Pinned vertices are moved too; callers put them back.
+///
+/// @param contacts  the nearest points of the resulting `x`, chosen at t + dt (without obstacles it
+///                  is left as it is); a caller that keeps it saves allocations
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
                                   Points& x, SurfaceContacts& contacts, int max_iterations = 3);
+
+ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
+                                  Points& x, int max_iterations = 3);
 
 }  // namespace cloth

@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <utility>
+#include <vector>
 
 #include "data/boundary.h"
 #include "data/mesh.h"
@@ -85,6 +87,51 @@ inline TriMesh roughened(TriMesh mesh, double amount, unsigned seed) {
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
         mesh.vertices.row(i) *= 1 + uniform(random, -amount, amount);
     return mesh;
+}
+
+/// Cube of side 2 around the origin, two triangles a side.
+inline TriMesh cube() {
+    TriMesh mesh{Points(8, 3), Faces(12, 3)};
+    for (int i = 0; i < 8; ++i)
+        mesh.vertices.row(i) << (i & 1 ? 1 : -1), (i & 2 ? 1 : -1), (i & 4 ? 1 : -1);
+    mesh.faces << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6,
+        0, 6, 2, 1, 3, 7, 1, 7, 5;
+    return mesh;
+}
+
+/// The same surface with three vertices of its own for each face.
+inline TriMesh triangle_soup(const TriMesh& mesh) {
+    TriMesh soup{Points(mesh.faces.size(), 3), Faces(mesh.faces.rows(), 3)};
+    for (Eigen::Index i = 0; i < mesh.faces.size(); ++i) {
+        soup.vertices.row(i) = mesh.vertices.row(mesh.faces.data()[i]);
+        soup.faces.data()[i] = static_cast<int>(i);
+    }
+    return soup;
+}
+
+inline Points transformed(const Points& points, const Pose& pose) {
+    return (points * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+}
+
+inline Pose pose_of(const Vec3& translation, double angle = 0.0, const Vec3& axis = {0, 1, 0}) {
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+    pose.translation() = translation;
+    return pose;
+}
+
+inline Obstacle primitive(ObstacleShape shape, const Vec3& half_extents, double radius) {
+    Obstacle obstacle;
+    obstacle.shape = shape;
+    obstacle.half_extents = half_extents;
+    obstacle.radius = radius;
+    return obstacle;
+}
+
+inline Boundary boundary_of(std::vector<Obstacle> obstacles) {
+    Boundary boundary;
+    boundary.obstacles = std::move(obstacles);
+    return boundary;
 }
 
 inline Obstacle mesh_obstacle(const TriMesh& mesh) {
