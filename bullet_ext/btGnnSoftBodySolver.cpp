@@ -1,0 +1,261 @@
+#include "bullet_ext/btGnnSoftBodySolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_ext/softBodyGarment.h"
+#include "bullet_ext/softBodyStep.h"
+#include "data/errors.h"
+
+using cloth::ArgumentError;
+using cloth::Garment;
+
+namespace {
+
+bool hasFiniteNodes(const btSoftBody& body) {
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!cloth::toVec3(body.m_nodes[i].m_x).allFinite() ||
+            !cloth::toVec3(body.m_nodes[i].m_v).allFinite())
+            return false;
+    return true;
+}
+
+Garment scaledGarment(const Garment& garment, double factor) {
+    cloth::TriMesh rest = garment.rest();
+    rest.vertices *= factor;
+    return Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins());
+}
+
+}  // namespace
+
+btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
+                                         btGnnSolverSettings settings)
+    : m_factory(std::move(factory)), m_settings(settings) {
+    if (!m_factory)
+        throw ArgumentError("btGnnSoftBodySolver", "the stepper factory is empty",
+                            "give a function that makes a Stepper of a Garment");
+}
+
+btGnnSoftBodySolver::~btGnnSoftBodySolver() = default;
+
+void btGnnSoftBodySolver::attach(btSoftBody* body) {
+    if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
+    Entry& entry = m_entries[body];
+    entry.detached = false;
+    build(*body, entry);
+}
+
+void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
+                                 cloth::StepperFactory factory) {
+    if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
+    cloth::checkGarmentFits(*body, garment);
+    Entry& entry = m_entries[body];
+    entry.given = std::make_shared<const Garment>(garment);
+    entry.factory = std::move(factory);
+    entry.detached = false;
+    build(*body, entry);
+}
+
+void btGnnSoftBodySolver::detach(btSoftBody* body) {
+    Entry& entry = m_entries[body];
+    entry.step.reset();
+    entry.stepping = Stepping::bullet;
+    entry.detached = true;
+}
+
+/// Makes garment and stepper of the body as it is now.
+void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
+    entry.step.reset();
+    entry.stepping = Stepping::bullet;
+    entry.failures = 0;
+    entry.topology = cloth::topologySignature(body);
+    entry.linkLength = cloth::meanLinkLength(body);
+    if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
+    cloth::checkCloth(body);
+    if (entry.given) cloth::checkGarmentFits(body, *entry.given);
+    auto garment = std::make_unique<const Garment>(
+        entry.given ? entry.given->with_pins(cloth::pinnedNodes(body))
+                    : cloth::garmentOfSoftBody(body, m_settings.fabric, m_settings.useBodyDensity));
+    std::unique_ptr<cloth::Stepper> stepper =
+        entry.factory ? entry.factory(*garment) : m_factory(*garment);
+    if (!stepper)
+        throw ArgumentError(cloth::softBodyName(body), "the stepper factory returned null",
+                            "return a Stepper or throw an error that says why there is none");
+    entry.step =
+        std::make_unique<cloth::SoftBodyStep>(body, std::move(garment), std::move(stepper));
+    entry.stepping = Stepping::cloth;
+}
+
+void btGnnSoftBodySolver::tryBuild(btSoftBody& body, Entry& entry) {
+    try {
+        build(body, entry);
+    } catch (const std::exception& error) {
+        say(error.what());
+    }
+}
+
+/// Follows what the user did to a known body since the last world step.
+void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
+    if (entry.detached) return;
+    if (!cloth::isCloth(body)) {
+        entry.step.reset();
+        entry.stepping = Stepping::bullet;
+        entry.topology = 0;  // look again if it becomes cloth
+        return;
+    }
+    const bool changed = cloth::topologySignature(body) != entry.topology;
+    const bool healed = entry.stepping == Stepping::frozen && hasFiniteNodes(body);
+    if (changed) entry.given = nullptr;
+    if (changed || healed) return tryBuild(body, entry);
+    if (entry.stepping != Stepping::cloth) {
+        if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
+        return;
+    }
+    followScale(body, entry);
+}
+
+/// New pins or another size: the same rest shape in a new garment.
+void btGnnSoftBodySolver::followScale(btSoftBody& body, Entry& entry) {
+    const double length = cloth::meanLinkLength(body);
+    const double factor = entry.linkLength > 0.0 ? length / entry.linkLength : 1.0;
+    const bool scaled = std::abs(factor - 1.0) > 0.1;
+    std::vector<int> pins = cloth::pinnedNodes(body);
+    const Garment& old = entry.step->garment();
+    if (!scaled && pins == old.pins()) return;
+    entry.given = std::make_shared<const Garment>(
+        (scaled ? scaledGarment(old, factor) : old).with_pins(std::move(pins)));
+    tryBuild(body, entry);
+}
+
+void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies,
+                                   bool forceUpdate) {
+    btDefaultSoftBodySolver::optimize(softBodies, forceUpdate);
+    for (int i = 0; i < softBodies.size(); ++i) {
+        btSoftBody& body = *softBodies[i];
+        const auto [it, added] = m_entries.try_emplace(&body);
+        Entry& entry = it->second;
+        entry.seen = true;
+        if (added && cloth::isCloth(body))
+            tryBuild(body, entry);
+        else
+            refresh(body, entry);
+    }
+    for (auto it = m_entries.begin(); it != m_entries.end();) {
+        const bool gone =
+            it->second.seen &&
+            softBodies.findLinearSearch(const_cast<btSoftBody*>(it->first)) == softBodies.size();
+        it = gone ? m_entries.erase(it) : std::next(it);
+    }
+}
+
+btGnnSoftBodySolver::Stepping btGnnSoftBodySolver::steppingOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it == m_entries.end() ? Stepping::bullet : it->second.stepping;
+}
+
+void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (steppingOf(m_softBodySet[i]) == Stepping::bullet && m_softBodySet[i]->isActive())
+            m_softBodySet[i]->predictMotion(solverdt);
+}
+
+void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
+    m_obstacles.beginStep(static_cast<double>(solverdt));
+    m_status.clothBodies = m_status.bulletBodies = m_status.frozenBodies = 0;
+    m_status.maxPenetration = 0.0;
+    m_status.times = {};
+    for (int i = 0; i < m_softBodySet.size(); ++i) {
+        btSoftBody& body = *m_softBodySet[i];
+        Entry& entry = m_entries[&body];
+        m_status.clothBodies += entry.stepping == Stepping::cloth;
+        m_status.bulletBodies += entry.stepping == Stepping::bullet;
+        m_status.frozenBodies += entry.stepping == Stepping::frozen;
+        if (!body.isActive()) continue;
+        if (entry.stepping == Stepping::bullet) body.solveConstraints();
+        if (entry.stepping == Stepping::cloth)
+            stepCloth(body, entry, static_cast<double>(solverdt));
+    }
+    for (const std::string& message : m_obstacles.takeMessages()) say(message);
+}
+
+void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
+    const auto result = entry.step->step(h, m_obstacles, m_settings.obstacleReach);
+    m_status.steps += result.steps;
+    m_status.failedSteps += result.failed_steps;
+    if (result.restored_nodes > 0)
+        say(cloth::softBodyName(body) +
+            ": nodes had positions or velocities that are not finite and were put back. Remedy: "
+            "check what the program writes to m_x and m_v");
+    if (result.steps > 0) {
+        const cloth::StepReport& report = entry.step->lastReport();
+        m_status.maxPenetration = std::max(m_status.maxPenetration, report.max_penetration);
+        m_status.times.proximity += report.times.proximity;
+        m_status.times.features += report.times.features;
+        m_status.times.solve += report.times.solve;
+        m_status.times.contact += report.times.contact;
+        entry.failures = result.failed_steps > 0 ? entry.failures + result.failed_steps : 0;
+    }
+    if (entry.failures >= m_settings.maxFailedSteps)
+        giveUp(body, entry,
+               "its stepper " + entry.step->stepper().name() + " failed " +
+                   std::to_string(entry.failures) + " times in a row");
+}
+
+void btGnnSoftBodySolver::giveUp(btSoftBody& body, Entry& entry, const std::string& why) {
+    say(cloth::softBodyName(body) + ": " + why +
+        "; Bullet steps it from now on. Remedy: call attach() to try again");
+    entry.step.reset();
+    entry.stepping = Stepping::bullet;
+    entry.detached = true;
+}
+
+void btGnnSoftBodySolver::updateSoftBodies() {
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        if (steppingOf(m_softBodySet[i]) == Stepping::bullet && m_softBodySet[i]->isActive())
+            m_softBodySet[i]->integrateMotion();
+}
+
+void btGnnSoftBodySolver::processCollision(btSoftBody* body,
+                                           const btCollisionObjectWrapper* object) {
+    if (steppingOf(body) == Stepping::bullet) body->defaultCollisionHandler(object);
+}
+
+void btGnnSoftBodySolver::processCollision(btSoftBody* body, btSoftBody* otherBody) {
+    if (steppingOf(body) == Stepping::bullet && steppingOf(otherBody) == Stepping::bullet)
+        body->defaultCollisionHandler(otherBody);
+}
+
+const cloth::Stepper* btGnnSoftBodySolver::stepperOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() && it->second.step ? &it->second.step->stepper() : nullptr;
+}
+
+const Garment* btGnnSoftBodySolver::garmentOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() && it->second.step ? &it->second.step->garment() : nullptr;
+}
+
+const cloth::StepReport* btGnnSoftBodySolver::reportOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() && it->second.step ? &it->second.step->lastReport() : nullptr;
+}
+
+void btGnnSoftBodySolver::setAnimatedObstacle(const btCollisionObject* object,
+                                              std::shared_ptr<const cloth::Faces> faces,
+                                              cloth::Points x0, cloth::Points x1, double duration) {
+    m_obstacles.setAnimated(object, {std::move(faces), std::move(x0), std::move(x1), duration});
+}
+
+void btGnnSoftBodySolver::removeAnimatedObstacle(const btCollisionObject* object) {
+    m_obstacles.removeAnimated(object);
+}
+
+void btGnnSoftBodySolver::say(const std::string& text) {
+    for (btGnnSolverMessage& message : m_status.messages)
+        if (message.text == text) {
+            ++message.count;
+            return;
+        }
+    constexpr size_t kMaxMessages = 100;
+    if (m_status.messages.size() < kMaxMessages) m_status.messages.push_back({text, 1});
+}

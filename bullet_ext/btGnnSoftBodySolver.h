@@ -1,0 +1,145 @@
+#pragma once
+
+#include <BulletSoftBody/btDefaultSoftBodySolver.h>
+#include <BulletSoftBody/btSoftBody.h>
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bullet_ext/bulletObstacles.h"
+#include "data/garment.h"
+#include "gnn/stepper.h"
+
+namespace cloth {
+
+class SoftBodyStep;
+
+/// Makes the stepper of one garment. The garment outlives the stepper.
+using StepperFactory = std::function<std::unique_ptr<Stepper>(const Garment&)>;
+
+}  // namespace cloth
+
+struct btGnnSolverSettings {
+    cloth::Fabric fabric;         ///< of cloth whose garment is not given
+    bool useBodyDensity = false;  ///< true: the fabric's density is the body's mass per area;
+                                  ///< false: the cloth moves as its fabric does, whatever it weighs
+    double obstacleReach = 0.1;   ///< how far around cloth obstacles are looked for (m), 0.02 to 1
+    int maxFailedSteps = 3;       ///< after so many failures in a row Bullet steps the body
+};
+
+struct btGnnSolverMessage {
+    std::string text;  ///< names the soft body, the problem and the remedy
+    int count = 1;     ///< how often it was said
+};
+
+/// What the solver is doing; read it when you like, nothing in it has to be handled.
+struct btGnnSolverStatus {
+    int clothBodies = 0;          ///< stepped by a Stepper in the last world step
+    int bulletBodies = 0;         ///< stepped by Bullet's own code
+    int frozenBodies = 0;         ///< not stepped at all: their nodes are not finite
+    long steps = 0;               ///< calls of Stepper::step() so far
+    long failedSteps = 0;         ///< those that failed
+    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m)
+    cloth::StageTimes times;      ///< of the last world step, all cloth together
+    std::vector<btGnnSolverMessage> messages;
+};
+
+/// Steps the cloth of a btSoftRigidDynamicsWorld with any cloth::Stepper, learned or not; hand it
+/// to the world in place of Bullet's own solver:
+///
+///     btGnnSoftBodySolver solver([](const cloth::Garment& garment) {
+///         return std::make_unique<cloth::QuasiNewtonStepper>(garment);
+///     });
+///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
+///     world.addSoftBody(cloth);
+///
+/// - Cloth is a soft body with faces and without tetrahedra, clusters, joints, pressure, volume
+///   conservation and pose matching. All other soft bodies, and cloth that cannot be a garment, are
+///   stepped by Bullet's own code, body by body, as by btDefaultSoftBodySolver.
+/// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
+///   nodes (moved by their rigid body, which does not feel the cloth).
+/// - Obstacles are the world's collision objects; see BulletObstacles. Cloth feels them, dynamic
+///   bodies do not feel cloth; cloth does not touch other soft bodies.
+/// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
+///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
+///   act as Bullet documents them; m_materials do not: the fabric decides.
+/// - The rest shape is the shape of the first step. Later transform() and translate() move the
+/// cloth
+///   and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
+///
+/// Remove soft bodies from the world before deleting them, and keep the solver until then.
+class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
+ public:
+    explicit btGnnSoftBodySolver(cloth::StepperFactory factory, btGnnSolverSettings settings = {});
+    ~btGnnSoftBodySolver() override;
+
+    /// Takes a cloth body now rather than at its first step, so that errors are thrown here.
+    /// @throws cloth::ArgumentError naming the body, what is wrong with it and the remedy
+    void attach(btSoftBody* body);
+    /// The same with the body's garment (its rest shape and fabric; pins are taken from the body)
+    /// and, if given, its own kind of stepper.
+    void attach(btSoftBody* body, const cloth::Garment& garment,
+                cloth::StepperFactory factory = nullptr);
+    /// Leaves the body to Bullet's own code from now on.
+    void detach(btSoftBody* body);
+
+    /// The stepper and garment of a body; null if Bullet steps it.
+    const cloth::Stepper* stepperOf(const btSoftBody* body) const;
+    const cloth::Garment* garmentOf(const btSoftBody* body) const;
+    /// Report of the body's last step; null if there was none.
+    const cloth::StepReport* reportOf(const btSoftBody* body) const;
+
+    /// Gives the surface of an animated obstacle before each stepSimulation(): it replaces the
+    /// shape of `object` (any object of the world; its collision filter and friction are used).
+    /// @param faces     (|F| x 3), the same pointer in every call
+    /// @param x0, x1    vertices now and after `duration` seconds (|V| x 3, m, world frame)
+    /// @param duration  usually the time of the stepSimulation() that follows; 0: one sub-step
+    void setAnimatedObstacle(const btCollisionObject* object,
+                             std::shared_ptr<const cloth::Faces> faces, cloth::Points x0,
+                             cloth::Points x1, double duration = 0.0);
+    /// Call before the object is deleted.
+    void removeAnimatedObstacle(const btCollisionObject* object);
+
+    const btGnnSolverStatus& status() const { return m_status; }
+    void clearMessages() { m_status.messages.clear(); }
+
+    bool checkInitialized() override { return true; }
+    void optimize(btAlignedObjectArray<btSoftBody*>& softBodies, bool forceUpdate = false) override;
+    void predictMotion(btScalar solverdt) override;
+    void solveConstraints(btScalar solverdt) override;
+    void updateSoftBodies() override;
+    void processCollision(btSoftBody* body, const btCollisionObjectWrapper* object) override;
+    void processCollision(btSoftBody* body, btSoftBody* otherBody) override;
+
+ private:
+    enum class Stepping { cloth, bullet, frozen };
+    struct Entry {
+        Stepping stepping = Stepping::bullet;
+        bool detached = false;  ///< the user chose Bullet
+        bool seen = false;      ///< was part of the world
+        std::unique_ptr<cloth::SoftBodyStep> step;
+        std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null
+        cloth::StepperFactory factory;                ///< the body's own, else null
+        size_t topology = 0;
+        double linkLength = 0.0;  ///< mean rest length when it was attached (m)
+        int failures = 0;         ///< in a row
+    };
+
+    void build(btSoftBody& body, Entry& entry);
+    void tryBuild(btSoftBody& body, Entry& entry);
+    void refresh(btSoftBody& body, Entry& entry);
+    void followScale(btSoftBody& body, Entry& entry);
+    void stepCloth(btSoftBody& body, Entry& entry, double h);
+    void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
+    void say(const std::string& text);
+    Stepping steppingOf(const btSoftBody* body) const;
+
+    cloth::StepperFactory m_factory;
+    btGnnSolverSettings m_settings;
+    btGnnSolverStatus m_status;
+    cloth::BulletObstacles m_obstacles;
+    std::map<const btSoftBody*, Entry> m_entries;
+};

@@ -1,0 +1,255 @@
+#include "bullet_ext/bulletObstacles.h"
+
+#include <BulletSoftBody/btSoftBody.h>
+#include <LinearMath/btTransformUtil.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "data/errors.h"
+
+namespace cloth {
+
+namespace {
+
+/// The pose on the way from a to b: s = 0 at a, 1 at b, more beyond b.
+Pose between(const Pose& a, const Pose& b, double s) {
+    if (s == 0.0 || a.matrix() == b.matrix()) return a;
+    if (s == 1.0) return b;
+    Pose pose;
+    const Eigen::AngleAxisd turn(b.linear() * a.linear().transpose());
+    pose.linear() =
+        Eigen::AngleAxisd(s * turn.angle(), turn.axis()).toRotationMatrix() * a.linear();
+    pose.translation() = a.translation() + s * (b.translation() - a.translation());
+    pose.makeAffine();
+    return pose;
+}
+
+Points transformed(const Pose& pose, const Points& local) {
+    return (local * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+}
+
+/// Where the object was h seconds ago, by its velocity.
+Pose posePreviously(const btCollisionObject& object, double h) {
+    btTransform previous = object.getWorldTransform();
+    if (object.isKinematicObject() || !object.isStaticObject())
+        btTransformUtil::integrateTransform(
+            object.getWorldTransform(), -object.getInterpolationLinearVelocity(),
+            -object.getInterpolationAngularVelocity(), static_cast<btScalar>(h), previous);
+    return toPose(previous);
+}
+
+/// How long the object's own velocity takes from one transform to the next, in whole steps of h.
+double travelTime(const btCollisionObject& object, const btTransform& from, double h) {
+    if (!object.isKinematicObject()) return h;
+    const btTransform& to = object.getWorldTransform();
+    const double distance = (to.getOrigin() - from.getOrigin()).length();
+    const double speed = object.getInterpolationLinearVelocity().length();
+    const double angle = from.getRotation().angleShortestPath(to.getRotation());
+    const double turn_rate = object.getInterpolationAngularVelocity().length();
+    double time = h;
+    if (distance > 1e-6 && speed > 0.0)
+        time = distance / speed;
+    else if (angle > 1e-3 && turn_rate > 0.0)
+        time = angle / turn_rate;
+    constexpr double kMaxSteps = 64;  // slower than that, the velocity is not about this move
+    const double steps = std::round(time / h);
+    return steps >= 1.0 && steps <= kMaxSteps ? steps * h : h;
+}
+
+bool overlaps(const Points& x, const Vec3& low, const Vec3& high) {
+    const Vec3 x_low = x.colwise().minCoeff(), x_high = x.colwise().maxCoeff();
+    return (x_low.array() <= high.array()).all() && (x_high.array() >= low.array()).all();
+}
+
+struct ProxyCollector : btBroadphaseAabbCallback {
+    std::vector<const btCollisionObject*> objects;
+    bool process(const btBroadphaseProxy* proxy) override {
+        objects.push_back(static_cast<const btCollisionObject*>(proxy->m_clientObject));
+        return true;
+    }
+};
+
+/// Numbers that tell two obstacles apart, whatever their addresses.
+std::vector<double> sortingKey(const Obstacle& o) {
+    std::vector<double> key = {static_cast<double>(o.shape), o.radius, o.friction};
+    for (int i = 0; i < 3; ++i) key.push_back(o.half_extents[i]);
+    for (int c = 0; c < 4; ++c)
+        for (int r = 0; r < 3; ++r) key.push_back(o.pose1.matrix()(r, c));
+    if (!o.faces) return key;
+    key.push_back(static_cast<double>(o.faces->rows()));
+    for (int i = 0; i < 3; ++i) key.push_back(o.x1(o.x1.rows() / 2, i));
+    return key;
+}
+
+void sortByGeometry(std::vector<Obstacle>& obstacles) {
+    std::vector<std::pair<std::vector<double>, size_t>> order;
+    for (size_t i = 0; i < obstacles.size(); ++i) order.emplace_back(sortingKey(obstacles[i]), i);
+    std::sort(order.begin(), order.end());
+    std::vector<Obstacle> sorted;
+    for (const auto& entry : order) sorted.push_back(std::move(obstacles[entry.second]));
+    obstacles = std::move(sorted);
+}
+
+}  // namespace
+
+void BulletObstacles::beginStep(double h) {
+    m_h = h;
+    ++m_step;
+    for (auto& [object, animation] : m_animated) {
+        if (animation.mesh.duration <= 0.0) animation.mesh.duration = h;
+        animation.begin = animation.end;
+        animation.end += h;
+    }
+    forgetUnseen();
+}
+
+void BulletObstacles::forgetUnseen() {
+    constexpr long kSteps = 1000;
+    for (auto it = m_tracks.begin(); it != m_tracks.end();)
+        it = it->second.step < m_step - kSteps ? m_tracks.erase(it) : std::next(it);
+}
+
+void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh mesh) {
+    if (!object || !mesh.faces || mesh.faces->rows() == 0 || mesh.x0.rows() == 0 ||
+        mesh.x0.rows() != mesh.x1.rows())
+        throw ArgumentError("animated obstacle",
+                            "has no object, no faces, or x0 and x1 differ in "
+                            "size",
+                            "give the same number of vertices at both times");
+    if (mesh.faces->minCoeff() < 0 || mesh.faces->maxCoeff() >= mesh.x0.rows())
+        throw ArgumentError("animated obstacle", "a face refers to a vertex that does not exist",
+                            "number vertices from 0 to |V| - 1");
+    if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0))
+        throw ArgumentError("animated obstacle", "vertices or duration are not finite",
+                            "check the animation before handing it over");
+    m_animated[object] = {std::move(mesh), 0.0, 0.0};
+}
+
+bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
+    if (object.getInternalType() == btCollisionObject::CO_SOFT_BODY) return false;
+    if (!object.hasContactResponse()) return false;
+    const btBroadphaseProxy* a = body.getBroadphaseHandle();
+    const btBroadphaseProxy* b = object.getBroadphaseHandle();
+    if (a && b &&
+        !((a->m_collisionFilterGroup & b->m_collisionFilterMask) &&
+          (b->m_collisionFilterGroup & a->m_collisionFilterMask)))
+        return false;
+    if (!body.checkCollideWith(&object) || !object.checkCollideWith(&body)) return false;
+    const auto& disabled = body.m_collisionDisabledObjects;
+    return disabled.findLinearSearch(&object) == disabled.size();
+}
+
+void BulletObstacles::refreshParts(Track& track, const btCollisionObject& object) {
+    const btCollisionShape& shape = *object.getCollisionShape();
+    const size_t signature = shapeSignature(shape);
+    if (track.step >= 0 && signature == track.signature) return;
+    track.signature = signature;
+    track.parts = partsOfShape(shape);
+    if (track.parts.empty() && shape.getShapeType() != EMPTY_SHAPE_PROXYTYPE)
+        m_messages.push_back(std::string("collision shape ") + shape.getName() +
+                             " has no surface that cloth could touch: it is passed through. "
+                             "Remedy: use a primitive, a convex hull or a triangle mesh");
+}
+
+BulletObstacles::Track& BulletObstacles::update(const btCollisionObject& object) {
+    Track& track = m_tracks[&object];
+    if (track.step == m_step) return track;
+    refreshParts(track, object);
+    const btTransform& target = object.getWorldTransform();
+    if (track.step != m_step - 1) {
+        track.begin = posePreviously(object, m_h);
+        track.end = toPose(target);
+        track.remaining = 0.0;
+    } else {
+        if (!(target == track.target)) track.remaining = travelTime(object, track.target, m_h);
+        track.begin = track.end;
+        const bool arrives = track.remaining <= 1.001 * m_h;
+        track.end =
+            arrives ? toPose(target) : between(track.begin, toPose(target), m_h / track.remaining);
+        track.remaining = arrives ? 0.0 : track.remaining - m_h;
+    }
+    track.target = target;
+    track.step = m_step;
+    return track;
+}
+
+void BulletObstacles::append(const Track& track, double friction, const TimeSpan& span,
+                             std::vector<Obstacle>& obstacles) const {
+    const Pose pose0 = between(track.begin, track.end, span.begin / m_h);
+    const Pose pose1 = between(track.begin, track.end, (span.begin + span.length) / m_h);
+    for (const ShapePart& part : track.parts) {
+        Obstacle obstacle;
+        obstacle.shape = part.shape;
+        obstacle.half_extents = part.half_extents;
+        obstacle.radius = part.radius;
+        obstacle.friction = friction;
+        if (part.shape == ObstacleShape::mesh) {
+            obstacle.faces = part.faces;
+            obstacle.x0 = transformed(pose0, part.vertices);
+            obstacle.x1 = transformed(pose1, part.vertices);
+        } else {
+            obstacle.pose0 = pose0 * part.frame;
+            obstacle.pose1 = pose1 * part.frame;
+        }
+        obstacles.push_back(std::move(obstacle));
+    }
+}
+
+void BulletObstacles::append(const Animation& animation, double friction, const TimeSpan& span,
+                             std::vector<Obstacle>& obstacles) const {
+    const AnimatedMesh& mesh = animation.mesh;
+    // A mesh that was not given anew stands still; one that was is assumed to go on as it does.
+    const bool stands = animation.begin >= mesh.duration * 0.999;
+    const auto at = [&](double time) -> Points {
+        const double s = stands ? 1.0 : (animation.begin + time) / mesh.duration;
+        if (s == 0.0) return mesh.x0;
+        if (std::abs(s - 1.0) < 1e-6) return mesh.x1;
+        return mesh.x0 + s * (mesh.x1 - mesh.x0);
+    };
+    Obstacle obstacle;
+    obstacle.faces = mesh.faces;
+    obstacle.x0 = at(span.begin);
+    obstacle.x1 = at(span.begin + span.length);
+    obstacle.friction = friction;
+    obstacles.push_back(std::move(obstacle));
+}
+
+std::vector<const btCollisionObject*> BulletObstacles::objectsIn(const btSoftBody& body,
+                                                                 const Vec3& low,
+                                                                 const Vec3& high) const {
+    ProxyCollector found;
+    if (body.m_worldInfo->m_broadphase)
+        body.m_worldInfo->m_broadphase->aabbTest(toBullet(low), toBullet(high), found);
+    std::vector<const btCollisionObject*> objects;
+    for (const btCollisionObject* object : found.objects)
+        if (!m_animated.count(object) && collides(body, *object)) objects.push_back(object);
+    return objects;
+}
+
+void BulletObstacles::watch(const btSoftBody& body, const Vec3& low, const Vec3& high) {
+    for (const btCollisionObject* object : objectsIn(body, low, high)) update(*object);
+}
+
+std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& low,
+                                            const Vec3& high, const TimeSpan& span) {
+    std::vector<Obstacle> obstacles;
+    const double softness = body.m_cfg.kDF;
+    for (const btCollisionObject* object : objectsIn(body, low, high))
+        append(update(*object), softness * object->getFriction(), span, obstacles);
+    for (const auto& [object, animation] : m_animated)
+        if (collides(body, *object) &&
+            (overlaps(animation.mesh.x0, low, high) || overlaps(animation.mesh.x1, low, high)))
+            append(animation, softness * object->getFriction(), span, obstacles);
+    sortByGeometry(obstacles);
+    return obstacles;
+}
+
+std::vector<std::string> BulletObstacles::takeMessages() {
+    return std::exchange(m_messages, {});
+}
+
+}  // namespace cloth

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bullet_ext/bulletShapes.h"
+
+class btCollisionObject;
+class btSoftBody;
+
+namespace cloth {
+
+/// A part of the time axis, counted from the start of the present world step (s).
+struct TimeSpan {
+    double begin = 0.0;
+    double length = 0.0;
+};
+
+/// A mesh obstacle whose vertices the user moves, such as a skinned character.
+struct AnimatedMesh {
+    std::shared_ptr<const Faces> faces;  ///< (|F| x 3), the same pointer for life
+    Points x0;                           ///< vertices now (|V| x 3, m, world frame)
+    Points x1;                           ///< vertices after `duration` (|V| x 3, m, world frame)
+    double duration = 0.0;               ///< from x0 to x1 (s); 0: one world step
+};
+
+/// Watches the collision objects of a Bullet world and describes them as obstacles.
+///
+/// Bullet gives poses at the end of a step only, and those of kinematic bodies once for all
+/// sub-steps of a stepSimulation(). So the pose of every object near cloth is remembered, a
+/// kinematic body's jump is spread over the time that its velocity says it takes, and times beyond
+/// the present step are extrapolated with the velocity of the step.
+class BulletObstacles {
+ public:
+    /// Starts a world step of h seconds.
+    void beginStep(double h);
+
+    /// Follows the objects that may touch `body` in the box [low, high] (m). Due in every world
+    /// step, so that their motion is known when near() is asked.
+    void watch(const btSoftBody& body, const Vec3& low, const Vec3& high);
+
+    /// Obstacles that may touch `body` within the box [low, high] during `span`: static, kinematic
+    /// and dynamic objects that pass Bullet's collision filters. Their order depends on their
+    /// geometry only, not on the order in which they were added.
+    std::vector<Obstacle> near(const btSoftBody& body, const Vec3& low, const Vec3& high,
+                               const TimeSpan& span);
+
+    void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
+    void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
+
+    /// Messages since the last call: shapes that cannot be obstacles, each reported once.
+    std::vector<std::string> takeMessages();
+
+ private:
+    struct Track {
+        size_t signature = 0;
+        std::vector<ShapePart> parts;
+        long step = -1;          ///< world step of the last update
+        Pose begin, end;         ///< at both ends of the present world step
+        btTransform target;      ///< where Bullet says the object is
+        double remaining = 0.0;  ///< time left to reach the target (s)
+    };
+    struct Animation {
+        AnimatedMesh mesh;
+        double begin = 0.0, end = 0.0;  ///< the present world step, counted from x0 (s)
+    };
+
+    bool collides(const btSoftBody& body, const btCollisionObject& object) const;
+    std::vector<const btCollisionObject*> objectsIn(const btSoftBody& body, const Vec3& low,
+                                                    const Vec3& high) const;
+    Track& update(const btCollisionObject& object);
+    void refreshParts(Track& track, const btCollisionObject& object);
+    void forgetUnseen();
+    void append(const Track& track, double friction, const TimeSpan& span,
+                std::vector<Obstacle>& obstacles) const;
+    void append(const Animation& animation, double friction, const TimeSpan& span,
+                std::vector<Obstacle>& obstacles) const;
+
+    double m_h = 0.0;
+    long m_step = 0;
+    std::map<const btCollisionObject*, Track> m_tracks;
+    std::map<const btCollisionObject*, Animation> m_animated;
+    std::vector<std::string> m_messages;
+};
+
+}  // namespace cloth

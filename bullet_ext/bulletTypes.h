@@ -1,0 +1,40 @@
+#pragma once
+
+#include <LinearMath/btTransform.h>
+
+#include "data/boundary.h"
+
+#ifdef BT_USE_DOUBLE_PRECISION
+#error \
+    "FastCloth is built against Bullet in single precision: compile without \
+BT_USE_DOUBLE_PRECISION and link bullet.pc (Debian), not bullet-float64.pc"
+#endif
+
+namespace cloth {
+
+inline Vec3 toVec3(const btVector3& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+inline btVector3 toBullet(const Vec3& v) {
+    return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()),
+            static_cast<btScalar>(v.z())};
+}
+
+/// Bullet's frame in doubles, its rotation made orthonormal again.
+inline Pose toPose(const btTransform& t) {
+    const btQuaternion q = t.getRotation();
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::Quaterniond(q.w(), q.x(), q.y(), q.z()).normalized().toRotationMatrix();
+    pose.translation() = toVec3(t.getOrigin());
+    return pose;
+}
+
+inline btTransform toBullet(const Pose& pose) {
+    const Eigen::Quaterniond q(pose.linear());
+    return btTransform(btQuaternion(static_cast<btScalar>(q.x()), static_cast<btScalar>(q.y()),
+                                    static_cast<btScalar>(q.z()), static_cast<btScalar>(q.w())),
+                       toBullet(Vec3(pose.translation())));
+}
+
+}  // namespace cloth

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bullet_ext/bulletTypes.h"
+#include "data/garment.h"
+
+class btSoftBody;
+
+namespace cloth {
+
+/// "soft body 7 at 0x..." for messages: Bullet's user index (-1 if not set) and the address.
+std::string softBodyName(const btSoftBody& body);
+
+/// Cloth has faces and nothing that needs Bullet's own code: no tetrahedra, clusters, pressure,
+/// volume conservation or pose matching.
+bool isCloth(const btSoftBody& body);
+
+/// Nodes that something else moves: zero inverse mass, or anchored to a rigid body. Sorted.
+std::vector<int> pinnedNodes(const btSoftBody& body);
+
+/// Positions of the nodes (|V| x 3, m).
+Points nodePositions(const btSoftBody& body);
+
+/// Faces as node numbers (|F| x 3), in the body's own orientation.
+Faces faceNodes(const btSoftBody& body);
+
+/// The garment that a soft body is: faces turned to one orientation, rest lengths of its links,
+/// pins from its nodes. The shape of a body that Bullet has not stepped yet is its rest shape, as
+/// for Bullet itself.
+///
+/// Masses: cloth moves by the ratio of stiffness to mass, and a Bullet user's masses (1 kg per node
+/// by default) mean nothing to Bullet's own solver. So the garment has the fabric's density unless
+/// `use_body_density`; node masses turn forces into accelerations.
+///
+/// @throws ArgumentError naming the body, the node or edge, and the remedy
+Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_density);
+
+/// Throws ArgumentError unless the body is cloth with finite nodes and usable masses.
+void checkCloth(const btSoftBody& body);
+
+/// Throws ArgumentError unless the garment has the nodes and faces of the body.
+void checkGarmentFits(const btSoftBody& body, const Garment& garment);
+
+/// A number that changes when nodes or faces are added, removed or renumbered.
+size_t topologySignature(const btSoftBody& body);
+
+/// Mean rest length of the links that are not bending links (m); 0 without links.
+/// setRestLengthScale() and scale() change it.
+double meanLinkLength(const btSoftBody& body);
+
+}  // namespace cloth

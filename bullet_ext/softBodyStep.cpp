@@ -1,0 +1,241 @@
+#include "bullet_ext/softBodyStep.h"
+
+#include <BulletSoftBody/btSoftBody.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_ext/softBodyGarment.h"
+
+namespace cloth {
+
+namespace {
+
+bool finite(const btVector3& v) {
+    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool differs(const btVector3& v, const float* written) {
+    return v.x() != written[0] || v.y() != written[1] || v.z() != written[2];
+}
+
+void store(const btVector3& v, float* written) {
+    for (int c = 0; c < 3; ++c) written[c] = v[c];
+}
+
+btVector3 restored(const float* written) {
+    return {written[0], written[1], written[2]};
+}
+
+struct Box {
+    Vec3 low, high;
+};
+
+/// Where the cloth is and will be after `time` seconds, and `reach` around it.
+Box boxAhead(const ClothState& state, double time, double reach) {
+    const Points ahead = state.x + time * state.v;
+    const Vec3 margin = Vec3::Constant(reach);
+    return {state.x.colwise().minCoeff().cwiseMin(ahead.colwise().minCoeff()).transpose() - margin,
+            state.x.colwise().maxCoeff().cwiseMax(ahead.colwise().maxCoeff()).transpose() + margin};
+}
+
+}  // namespace
+
+SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
+                           std::unique_ptr<Stepper> stepper)
+    : m_body(body), m_garment(std::move(garment)), m_stepper(std::move(stepper)) {
+    const int count = body.m_nodes.size();
+    m_shown.x = nodePositions(body);
+    m_shown.v.resize(count, 3);
+    m_written.resize(static_cast<size_t>(count) * 6);
+    for (int i = 0; i < count; ++i) {
+        m_shown.v.row(i) = toVec3(body.m_nodes[i].m_v);
+        store(body.m_nodes[i].m_x, &m_written[static_cast<size_t>(i) * 6]);
+        store(body.m_nodes[i].m_v, &m_written[static_cast<size_t>(i) * 6 + 3]);
+    }
+    m_impulse = Points::Zero(count, 3);
+}
+
+SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, double reach) {
+    m_h = h * static_cast<double>(m_body.m_cfg.timescale);
+    Result result;
+    takeConstants();
+    result.restored_nodes = restoreNodes();
+    takeNodes();
+    takeForces();
+    takePins();
+    const Box box = boxAhead(m_shown, m_h, reach);
+    obstacles.watch(m_body, box.low, box.high);
+    const double end = m_h * (1.0 - 1e-3);  // float time steps must not cost an extra tick
+    while (!m_tick.valid || m_tick.begin + m_tick.length < end) {
+        startTick(result.steps == 0);
+        result.failed_steps += runTick(obstacles, reach) ? 0 : 1;
+        ++result.steps;
+    }
+    showTick();
+    writeNodes();
+    m_tick.begin -= m_h;
+    return result;
+}
+
+/// What btSoftBody::predictMotion() prepares and other parts of Bullet rely on.
+void SoftBodyStep::takeConstants() {
+    if (m_body.m_bUpdateRtCst) {
+        m_body.m_bUpdateRtCst = false;
+        m_body.updateConstants();
+        m_body.m_fdbvt.clear();
+        if (m_body.m_cfg.collisions & btSoftBody::fCollision::VF_SS) m_body.initializeFaceTree();
+    }
+    btSoftBody::SolverState& sst = m_body.m_sst;
+    sst.sdt = static_cast<btScalar>(m_h);
+    sst.isdt = 1 / sst.sdt;
+    sst.velmrg = sst.sdt * 3;
+    sst.radmrg = m_body.getCollisionShape()->getMargin();
+    sst.updmrg = sst.radmrg * static_cast<btScalar>(0.25);
+    m_body.m_rcontacts.clear();
+    m_body.m_scontacts.clear();
+}
+
+int SoftBodyStep::restoreNodes() {
+    int count = 0;
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btSoftBody::Node& node = m_body.m_nodes[i];
+        const float* written = &m_written[static_cast<size_t>(i) * 6];
+        if (!finite(node.m_f)) node.m_f.setZero();
+        if (finite(node.m_x) && finite(node.m_v)) continue;
+        node.m_x = restored(written);
+        node.m_v = restored(written + 3);
+        ++count;
+    }
+    return count;
+}
+
+void SoftBodyStep::takeNodes() {
+    const std::vector<char>& pinned = m_garment->is_pinned();
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btSoftBody::Node& node = m_body.m_nodes[i];
+        const float* written = &m_written[static_cast<size_t>(i) * 6];
+        const bool moved = differs(node.m_x, written), pushed = differs(node.m_v, written + 3);
+        node.m_q = node.m_x;
+        if (pinned[static_cast<size_t>(i)] || !(moved || pushed)) continue;
+        if (moved) m_shown.x.row(i) = toVec3(node.m_x);
+        if (pushed) m_shown.v.row(i) = toVec3(node.m_v);
+        m_tick.valid = false;
+    }
+}
+
+void SoftBodyStep::takeForces() {
+    m_body.applyForces();  // wind, by Bullet's aerodynamic models
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btSoftBody::Node& node = m_body.m_nodes[i];
+        if (node.m_im > 0 && finite(node.m_f)) m_impulse.row(i) += m_h * toVec3(node.m_f);
+        node.m_f.setZero();
+    }
+}
+
+void SoftBodyStep::takePins() {
+    const std::vector<int>& pins = m_garment->pins();
+    const auto count = static_cast<Eigen::Index>(pins.size());
+    m_pins_before.resize(count, 3);
+    m_pins_after.resize(count, 3);
+    for (Eigen::Index p = 0; p < count; ++p) {
+        const btSoftBody::Node& node = m_body.m_nodes[pins[static_cast<size_t>(p)]];
+        m_pins_before.row(p) = m_shown.x.row(pins[static_cast<size_t>(p)]);
+        m_pins_after.row(p) = toVec3(node.m_x) + m_h * toVec3(node.m_v);
+    }
+    for (int a = 0; a < m_body.m_anchors.size(); ++a) {
+        const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
+        const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
+        const auto pin = std::lower_bound(pins.begin(), pins.end(), node) - pins.begin();
+        m_pins_after.row(pin) = toVec3(anchor.m_body->getWorldTransform() * anchor.m_local);
+    }
+}
+
+Points SoftBodyStep::pinsAt(double time) const {
+    if (time <= m_h) return m_pins_before + (time / m_h) * (m_pins_after - m_pins_before);
+    // Beyond the world step pins go on as they did in the same part of the last tick.
+    const double rest = (time - m_h) / (m_tick.begin + m_tick.length - m_h);
+    return m_pins_after + std::min(rest, 1.0) * m_pins_drift;
+}
+
+Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, double reach) {
+    Boundary boundary;
+    boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
+    boundary.pin_targets = pinsAt(m_tick.begin + m_tick.length);
+    const Box box = boxAhead(m_tick.from, m_tick.length, reach);
+    boundary.obstacles = obstacles.near(m_body, box.low, box.high, {m_tick.begin, m_tick.length});
+    if (!m_impulse.isZero(0.0)) {
+        boundary.accelerations = m_impulse / m_tick.length;
+        for (int i = 0; i < m_body.m_nodes.size(); ++i)
+            boundary.accelerations.row(i) *= static_cast<double>(m_body.m_nodes[i].m_im);
+        m_impulse.setZero();
+    }
+    return boundary;
+}
+
+/// The next tick starts where the last one ended, or where the nodes are.
+void SoftBodyStep::startTick(bool first_of_step) {
+    const bool goes_on = m_tick.valid;
+    m_pins_drift = goes_on && first_of_step ? Points(m_pins_before - m_pins_at_tick)
+                                            : Points::Zero(m_pins_before.rows(), 3);
+    m_pins_at_tick = m_pins_after;
+    m_tick.from = goes_on ? m_tick.to : m_shown;
+    m_tick.begin = goes_on ? m_tick.begin + m_tick.length : 0.0;
+    const double fixed = m_stepper->fixed_dt();
+    m_tick.length = fixed > 0.0 ? fixed : m_h - m_tick.begin;
+    m_tick.valid = true;
+    const Points pins_now = pinsAt(m_tick.begin);
+    const std::vector<int>& pins = m_garment->pins();
+    for (size_t p = 0; p < pins.size(); ++p)
+        m_tick.from.x.row(pins[p]) = pins_now.row(static_cast<Eigen::Index>(p));
+}
+
+bool SoftBodyStep::runTick(BulletObstacles& obstacles, double reach) {
+    const ClothState& from = m_tick.from;
+    const Boundary boundary = boundaryOfTick(obstacles, reach);
+    ClothState to = from;
+    m_report = m_stepper->step(boundary, m_tick.length, to);
+    m_report.finite = m_report.finite && to.x.allFinite() && to.v.allFinite();
+    m_tick.to = m_report.finite ? std::move(to) : from;
+    m_tick.to.time = from.time + m_tick.length;
+    const double damping = static_cast<double>(m_body.m_cfg.kDP);
+    if (damping > 0.0) m_tick.to.v *= std::pow(1.0 - damping, m_tick.length / m_h);
+    return m_report.finite;
+}
+
+void SoftBodyStep::showTick() {
+    const double s = std::clamp((m_h - m_tick.begin) / m_tick.length, 0.0, 1.0);
+    if (s > 1.0 - 1e-3) {
+        m_shown = m_tick.to;
+    } else {
+        m_shown.x = m_tick.from.x + s * (m_tick.to.x - m_tick.from.x);
+        m_shown.v = m_tick.from.v + s * (m_tick.to.v - m_tick.from.v);
+        m_shown.time = m_tick.from.time + s * m_tick.length;
+    }
+    const std::vector<int>& pins = m_garment->pins();
+    for (size_t p = 0; p < pins.size(); ++p)
+        m_shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
+}
+
+void SoftBodyStep::writeNodes() {
+    const std::vector<char>& pinned = m_garment->is_pinned();
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btSoftBody::Node& node = m_body.m_nodes[i];
+        float* written = &m_written[static_cast<size_t>(i) * 6];
+        node.m_x = toBullet(Vec3(m_shown.x.row(i)));
+        node.m_vn = node.m_v;
+        // The velocity of a pin is the user's command and stays, as in Bullet.
+        if (!pinned[static_cast<size_t>(i)]) node.m_v = toBullet(Vec3(m_shown.v.row(i)));
+        store(node.m_x, written);
+        store(node.m_v, written + 3);
+    }
+    m_body.updateNormals();
+    m_body.updateNodeTree(/*use_velocity=*/false, /*margin=*/true);
+    m_body.updateFaceTree(/*use_velocity=*/false, /*margin=*/true);
+    m_body.m_ndbvt.optimizeIncremental(1);
+    m_body.m_fdbvt.optimizeIncremental(1);
+    m_body.updateBounds();
+    m_body.updatePose();
+}
+
+}  // namespace cloth

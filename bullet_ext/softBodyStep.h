@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "bullet_ext/bulletObstacles.h"
+#include "gnn/stepper.h"
+
+class btSoftBody;
+
+namespace cloth {
+
+/// Joins a Bullet soft body to the Stepper that moves it.
+///
+/// A world step of any length is served by a stepper with any time step. The stepper's steps
+/// ("ticks") follow each other without gaps: a tick starts as soon as the world's time passes the
+/// end of the last one, looks ahead with the velocities of obstacles and pins, and the nodes show
+/// the straight line between the tick's two ends. So cloth and obstacles show the same time; what
+/// an obstacle's acceleration changes within a tick is seen at the next one. Steppers that accept
+/// any time step use the world's, with no prediction at all.
+///
+/// Whatever the user does to nodes between steps counts: moved or pushed free nodes start a new
+/// tick from what the nodes say, pinned nodes are followed, node forces and wind act as impulses.
+class SoftBodyStep {
+ public:
+    SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
+                 std::unique_ptr<Stepper> stepper);
+
+    const Garment& garment() const { return *m_garment; }
+    const Stepper& stepper() const { return *m_stepper; }
+    const StepReport& lastReport() const { return m_report; }
+
+    struct Result {
+        int steps = 0;           ///< steps that the stepper made, 0 within a tick
+        int failed_steps = 0;    ///< steps that it could not make: the cloth holds its shape
+        int restored_nodes = 0;  ///< nodes that were not finite and were put back
+    };
+    /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
+    /// the world step and writes the nodes. Obstacles are looked for within `reach` (m).
+    Result step(double h, BulletObstacles& obstacles, double reach);
+
+ private:
+    struct Tick {
+        ClothState from, to;
+        double begin = 0.0;   ///< relative to the start of the present world step (s)
+        double length = 0.0;  ///< (s)
+        bool valid = false;
+    };
+
+    int restoreNodes();
+    void takeConstants();
+    void takeNodes();
+    void takeForces();
+    void takePins();
+    Points pinsAt(double time) const;
+    Boundary boundaryOfTick(BulletObstacles& obstacles, double reach);
+    void startTick(bool first_of_step);
+    bool runTick(BulletObstacles& obstacles, double reach);
+    void showTick();
+    void writeNodes();
+
+    btSoftBody& m_body;
+    std::unique_ptr<const Garment> m_garment;
+    std::unique_ptr<Stepper> m_stepper;
+    StepReport m_report;
+    double m_h = 0.0;  ///< the present world step (s)
+    Tick m_tick;
+    ClothState m_shown;            ///< what the nodes say, in doubles
+    Points m_impulse;              ///< |V| x 3 (N s): forces of the world steps since the last tick
+    Points m_pins_before;          ///< |pins| x 3 (m): at the start of the world step
+    Points m_pins_after;           ///< at its end
+    Points m_pins_at_tick;         ///< m_pins_after in the first world step of the tick
+    Points m_pins_drift;           ///< how far they moved in the rest of the last tick
+    std::vector<float> m_written;  ///< |V| x 6: m_x and m_v as they were written
+};
+
+}  // namespace cloth

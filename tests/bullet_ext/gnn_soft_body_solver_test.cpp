@@ -1,0 +1,506 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "bullet_ext/btGnnSoftBodySolver.h"
+#include "bullet_ext/garmentSoftBody.h"
+#include "data/errors.h"
+#include "tests/bullet_ext/bullet_world.h"
+
+using namespace cloth;
+using namespace cloth::test;
+
+namespace {
+
+std::vector<btVector3> positions(const btSoftBody& body) {
+    std::vector<btVector3> x;
+    for (int i = 0; i < body.m_nodes.size(); ++i) x.push_back(body.m_nodes[i].m_x);
+    return x;
+}
+
+void expect_same(const std::vector<btVector3>& a, const std::vector<btVector3>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (size_t i = 0; i < a.size(); ++i)
+        for (int c = 0; c < 3; ++c) ASSERT_EQ(a[i][c], b[i][c]) << "node " << i;
+}
+
+std::string attach_error(btGnnSoftBodySolver& solver, btSoftBody* body) {
+    try {
+        solver.attach(body);
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+void expect_contains(const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+TriMesh square_mesh(int n) {
+    TriMesh mesh;
+    mesh.vertices.resize(n * n, 3);
+    mesh.faces.resize(2 * (n - 1) * (n - 1), 3);
+    for (int j = 0, f = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            mesh.vertices.row(j * n + i) << i / (n - 1.0), 0, j / (n - 1.0);
+            if (i + 1 == n || j + 1 == n) continue;
+            const int a = j * n + i;
+            mesh.faces.row(f++) << a, a + n, a + 1;
+            mesh.faces.row(f++) << a + 1, a + n, a + n + 1;
+        }
+    return mesh;
+}
+
+}  // namespace
+
+TEST(GnnSolver, FreeFallIsTheClosedFormAtTheWorldsTimeStep) {
+    for (double rate : {60.0, 240.0}) {
+        btGnnSoftBodySolver solver(free_fall());
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 2, 0}));
+        const int count = static_cast<int>(rate / 2);
+        world.step(1.0 / rate, count);
+        // Semi-implicit Euler: y = -g h^2 n (n + 1) / 2.
+        const double expected = -9.81 / (rate * rate) * count * (count + 1) / 2;
+        EXPECT_NEAR(node(*cloth, 7).y() - 2.0, expected, 1e-4);
+        EXPECT_NEAR(cloth->m_nodes[7].m_v.y(), -9.81 * 0.5, 1e-3);
+        EXPECT_EQ(solver.status().clothBodies, 1);
+        EXPECT_EQ(solver.status().bulletBodies, 0);
+        EXPECT_EQ(solver.status().steps, count);
+    }
+}
+
+TEST(GnnSolver, GravityIsTheSoftBodysNotTheWorlds) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    world->setGravity({0, 5, 0});
+    world.info().m_gravity = {1, 0, 0};
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(0.1);
+    EXPECT_NEAR(cloth->m_nodes[3].m_v.x(), 0.1, 1e-6);
+    EXPECT_EQ(cloth->m_nodes[3].m_v.y(), 0);
+}
+
+TEST(GnnSolver, StepperWithItsOwnTimeStepFallsAtTheSameRateInAnyWorld) {
+    for (double rate : {15.0, 30.0, 50.0, 60.0, 240.0}) {
+        auto log = std::make_shared<FreeFall::Log>();
+        btGnnSoftBodySolver solver(free_fall(log, 1.0 / 30.0));
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        world.step(1.0 / rate, static_cast<int>(rate));
+        EXPECT_EQ(log->dts.size(), 30u) << rate;
+        // 1 s at 30 Hz: -g / 30^2 * 30 * 31 / 2; ticks and world steps end together here.
+        EXPECT_NEAR(node(*cloth, 0).y(), -9.81 * 31 / 60, 1e-3) << rate;
+        EXPECT_NEAR(cloth->m_nodes[0].m_v.y(), -9.81, 1e-3) << rate;
+    }
+}
+
+TEST(GnnSolver, NodesMoveEvenlyBetweenTicks) {
+    btGnnSoftBodySolver solver(free_fall(nullptr, 1.0 / 30.0));
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 240.0);
+    const double first = node(*cloth, 0).y();
+    for (int i = 2; i <= 8; ++i) {
+        world.step(1.0 / 240.0);
+        EXPECT_NEAR(node(*cloth, 0).y(), i * first, 1e-6);
+    }
+    EXPECT_NEAR(8 * first, -9.81 / 900.0, 1e-6);
+}
+
+TEST(GnnSolver, PinnedNodesStayOrGoWhereTheyAreSent) {
+    for (double fixed : {0.0, 1.0 / 30.0}) {
+        btGnnSoftBodySolver solver(free_fall(nullptr, fixed));
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 1, 0}, 5, 1 + 2));
+        const Vec3 start = node(*cloth, 0);
+        ASSERT_EQ(cloth->m_nodes[4].m_im, 0);
+        cloth->m_nodes[4].m_v = {0, 0.6f, 0};
+        world.step(1.0 / 60.0, 30);
+        EXPECT_EQ(node(*cloth, 0), start);
+        EXPECT_NEAR(node(*cloth, 4).y(), 1.0 + 0.3, 1e-4);
+        cloth->m_nodes[0].m_x += btVector3(0.1f, 0, 0);
+        world.step(1.0 / 60.0);
+        EXPECT_NEAR(node(*cloth, 0).x(), start.x() + 0.1, 1e-6);
+    }
+}
+
+TEST(GnnSolver, StepperIsToldWherePinsEnd) {
+    auto log = std::make_shared<FreeFall::Log>();
+    btGnnSoftBodySolver solver(free_fall(log, 1.0 / 30.0));
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 1, 0}, 5, 1));
+    const double speed = 0.9;
+    for (int i = 0; i < 16; ++i) {  // a pin that is moved by hand every 1/240 s
+        cloth->m_nodes[0].m_x += btVector3(static_cast<btScalar>(speed / 240.0), 0, 0);
+        world.step(1.0 / 240.0);
+    }
+    ASSERT_EQ(log->boundaries.size(), 2u);
+    // The second tick knows how the pin went on in the first one.
+    EXPECT_NEAR(log->boundaries[1].pin_targets(0, 0), -0.5 + speed * 2.0 / 30.0, 1e-5);
+}
+
+TEST(GnnSolver, AnchoredNodesFollowTheirRigidBody) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btRigidBody* box = world.add(new btBoxShape({0.1f, 0.1f, 0.1f}), {-0.5f, 5, -0.5f}, true);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 1, 0}));
+    cloth->appendAnchor(0, box, true);
+    for (int i = 0; i < 30; ++i) {
+        btTransform t = box->getWorldTransform();
+        t.getOrigin() += btVector3(0.01f, 0, 0);
+        box->setWorldTransform(t);
+        world.step(1.0 / 60.0);
+    }
+    EXPECT_NEAR((node(*cloth, 0) - Vec3(-0.5 + 0.3, 1, -0.5)).norm(), 0.0, 1e-5);
+    EXPECT_LT(node(*cloth, 1).y(), 0.5);
+    cloth->m_anchors.clear();
+    world.step(1.0 / 60.0);
+    EXPECT_LT(node(*cloth, 0).y(), 1.0);
+}
+
+TEST(GnnSolver, UserChangesToFreeNodesCount) {
+    for (double fixed : {0.0, 1.0 / 30.0}) {
+        btGnnSoftBodySolver solver(free_fall(nullptr, fixed));
+        World world(&solver);
+        world.info().m_gravity.setZero();
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        world.step(1.0 / 60.0, 3);
+        cloth->m_nodes[6].m_x += btVector3(0, 0.5f, 0);
+        cloth->m_nodes[8].m_v = {0, 0, 1.2f};
+        world.step(1.0 / 60.0, 10);
+        EXPECT_NEAR(node(*cloth, 6).y(), 0.5, 1e-6);
+        EXPECT_NEAR(node(*cloth, 8).z() - node(*cloth, 7).z(), 0.2, 1e-4);
+        cloth->translate({0, 3, 0});
+        world.step(1.0 / 60.0);
+        EXPECT_NEAR(node(*cloth, 0).y(), 3.0, 1e-5);
+    }
+}
+
+TEST(GnnSolver, NodeForcesActAsImpulses) {
+    for (double fixed : {0.0, 1.0 / 30.0}) {
+        btGnnSoftBodySolver solver(free_fall(nullptr, fixed));
+        World world(&solver);
+        world.info().m_gravity.setZero();
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        const double mass = 1.0 / static_cast<double>(cloth->m_nodes[12].m_im);
+        for (int i = 0; i < 60; ++i) {
+            cloth->addForce({0, 3, 0}, 12);
+            world.step(1.0 / 60.0);
+        }
+        world.step(1.0 / 60.0, 2);
+        EXPECT_NEAR(cloth->m_nodes[12].m_v.y(), 3.0 / mass, 0.02 * 3.0 / mass) << fixed;
+        EXPECT_EQ(cloth->m_nodes[0].m_v.y(), 0) << fixed;
+    }
+}
+
+TEST(GnnSolver, WindPushesClothByBulletsAerodynamics) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    world.info().m_gravity.setZero();
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    cloth->m_cfg.aeromodel = btSoftBody::eAeroModel::F_TwoSidedLiftDrag;
+    cloth->m_cfg.kDG = 0.5f;
+    cloth->setWindVelocity({0, 4, 0});
+    world.step(1.0 / 60.0, 10);
+    EXPECT_GT(cloth->m_nodes[12].m_v.y(), 1e-3);
+}
+
+TEST(GnnSolver, DampingSlowsClothDownAtTheRateOfWorldSteps) {
+    for (double fixed : {0.0, 1.0 / 30.0}) {
+        btGnnSoftBodySolver solver(free_fall(nullptr, fixed));
+        World world(&solver);
+        world.info().m_gravity.setZero();
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        cloth->m_cfg.kDP = 0.1f;
+        cloth->setVelocity({1, 0, 0});
+        world.step(1.0 / 60.0, 10);
+        EXPECT_NEAR(cloth->m_nodes[0].m_v.x(), std::pow(0.9, 10), 1e-4) << fixed;
+    }
+}
+
+TEST(GnnSolver, NormalsBoundsTreesAndVertexBufferFollowTheNodes) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 3, 0}));
+    btSoftBody::sRayCast hit;
+    ASSERT_TRUE(cloth->rayTest({0.1f, 9, 0.1f}, {0.1f, -9, 0.1f}, hit));  // builds the face tree
+    cloth->setVelocity({1, 0, 0});
+    world.step(1.0 / 60.0, 60);
+    const double y = node(*cloth, 0).y(), x = node(*cloth, 12).x();
+    btVector3 low, high;
+    cloth->getAabb(low, high);
+    EXPECT_LE(low.y(), y);
+    EXPECT_GE(high.y(), y);
+    EXPECT_LT(high.y() - low.y(), 1.0f);
+    EXPECT_NEAR(std::abs(cloth->m_nodes[12].m_n.y()), 1.0, 1e-3);
+    const auto at = static_cast<btScalar>(x + 0.1);
+    ASSERT_TRUE(cloth->rayTest({at, 9, 0.1f}, {at, -9, 0.1f}, hit));
+    EXPECT_NEAR(9 - 18 * hit.fraction, y, 1e-3);
+    btCollisionWorld::ClosestRayResultCallback ray({at, 9, 0.1f}, {at, -9, 0.1f});
+    world->rayTest({at, 9, 0.1f}, {at, -9, 0.1f}, ray);
+    ASSERT_TRUE(ray.hasHit());
+    EXPECT_EQ(ray.m_collisionObject, cloth);
+    std::vector<float> buffer(static_cast<size_t>(cloth->m_nodes.size()) * 6);
+    btCPUVertexBufferDescriptor descriptor(buffer.data(), 0, 6, 3, 6);
+    solver.copySoftBodyToVertexBuffer(cloth, &descriptor);
+    EXPECT_EQ(buffer[12 * 6 + 1], cloth->m_nodes[12].m_x.y());
+}
+
+TEST(GnnSolver, PreviousPositionIsThatOfTheStepBefore) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 5);
+    const btVector3 before = cloth->m_nodes[3].m_x;
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(cloth->m_nodes[3].m_q, before);
+}
+
+TEST(GnnSolver, SoftBodiesThatAreNotClothMoveBitForBitAsWithBulletsSolver) {
+    btGnnSoftBodySolver solver(free_fall());
+    World ours(&solver), bullets;
+    std::vector<btSoftBody*> others[2];
+    World* worlds[2] = {&ours, &bullets};
+    for (int w = 0; w < 2; ++w) {
+        World& world = *worlds[w];
+        world.add(new btBoxShape({5, 0.5f, 5}), {0, -0.5f, 0});
+        if (w == 0) world.add(patch(world.info(), {0, 3, 0}));
+        others[w].push_back(
+            world.add(btSoftBodyHelpers::CreateRope(world.info(), {-1, 1, 0}, {1, 1, 0}, 12, 1)));
+        btSoftBody* ball =
+            btSoftBodyHelpers::CreateEllipsoid(world.info(), {0, 1, 2}, {0.3f, 0.3f, 0.3f}, 64);
+        ball->m_cfg.kPR = 50;
+        others[w].push_back(world.add(ball));
+        world.step(1.0 / 60.0, 60);
+    }
+    for (size_t b = 0; b < others[0].size(); ++b)
+        expect_same(positions(*others[0][b]), positions(*others[1][b]));
+    EXPECT_EQ(solver.status().clothBodies, 1);
+    EXPECT_EQ(solver.status().bulletBodies, 2);
+}
+
+TEST(GnnSolver, DetachedClothMovesBitForBitAsWithBulletsSolver) {
+    btGnnSoftBodySolver solver(free_fall());
+    World ours(&solver), bullets;
+    btSoftBody* a = ours.add(patch(ours.info(), {0, 1, 0}, 9, 1 + 2));
+    btSoftBody* b = bullets.add(patch(bullets.info(), {0, 1, 0}, 9, 1 + 2));
+    solver.detach(a);
+    ours.step(1.0 / 60.0, 30);
+    bullets.step(1.0 / 60.0, 30);
+    expect_same(positions(*a), positions(*b));
+}
+
+TEST(GnnSolver, OrderOfBodiesAndObstaclesDoesNotChangeResults) {
+    auto log_a = std::make_shared<FreeFall::Log>(), log_b = std::make_shared<FreeFall::Log>();
+    std::vector<btVector3> results[2][2];
+    std::shared_ptr<FreeFall::Log> logs[2] = {log_a, log_b};
+    for (int order = 0; order < 2; ++order) {
+        btGnnSoftBodySolver solver(free_fall(logs[order]));
+        World world(&solver);
+        const auto obstacle = [&](int i) {
+            if (i == 0) world.add(new btSphereShape(0.2f), {0.3f, 0.9f, 0});
+            if (i == 1) world.add(new btBoxShape({0.2f, 0.1f, 0.2f}), {-0.3f, 0.9f, 0});
+            if (i == 2) world.add(new btSphereShape(0.2f), {0.1f, 0.9f, 0.2f});
+        };
+        btSoftBody* bodies[2];
+        for (int i = 0; i < 3; ++i) obstacle(order ? 2 - i : i);
+        for (int i = 0; i < 2; ++i) {
+            const int which = order ? 1 - i : i;
+            bodies[which] =
+                world.add(patch(world.info(), {0, 1 + 2 * btScalar(which), 0}, 5, which));
+        }
+        world.step(1.0 / 60.0, 5);
+        for (int i = 0; i < 2; ++i) results[order][i] = positions(*bodies[i]);
+    }
+    for (int i = 0; i < 2; ++i) expect_same(results[0][i], results[1][i]);
+    const auto& a = log_a->boundaries[0].obstacles;
+    const auto& b = log_b->boundaries[1].obstacles;  // the same cloth, second in the other order
+    ASSERT_EQ(a.size(), 3u);
+    ASSERT_EQ(b.size(), 3u);
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(a[i].shape, b[i].shape);
+        EXPECT_EQ(a[i].pose1.matrix(), b[i].pose1.matrix());
+    }
+}
+
+TEST(GnnSolver, BodiesComeAndGo) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* first = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 3);
+    btSoftBody* second = world.add(patch(world.info(), {0, 5, 0}, 7));
+    world.step(1.0 / 60.0, 3);
+    EXPECT_EQ(solver.status().clothBodies, 2);
+    world.remove(first);
+    world.step(1.0 / 60.0, 3);
+    EXPECT_EQ(solver.status().clothBodies, 1);
+    EXPECT_EQ(solver.stepperOf(first), nullptr);
+    btSoftBody* third = world.add(patch(world.info(), {0, 0, 0}, 4));
+    world.step(1.0 / 60.0);
+    EXPECT_NE(solver.stepperOf(third), nullptr);
+    EXPECT_NEAR(third->m_nodes[0].m_v.y(), -9.81 / 60, 1e-4);
+    EXPECT_NEAR(second->m_nodes[0].m_v.y(), -9.81 * 7 / 60, 1e-4);
+}
+
+TEST(GnnSolver, RepinnedClothKeepsItsRestShapeAndVelocity) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 5, 1 + 2));
+    world.step(1.0 / 60.0, 30);
+    const Points rest = solver.garmentOf(cloth)->rest().vertices;
+    const btScalar speed = cloth->m_nodes[12].m_v.y();
+    cloth->setMass(0, 1);
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(solver.garmentOf(cloth)->pins(), std::vector<int>{4});
+    EXPECT_EQ(solver.garmentOf(cloth)->rest().vertices, rest);
+    EXPECT_NEAR(cloth->m_nodes[12].m_v.y(), speed - 9.81 / 60, 1e-4);
+    EXPECT_NEAR(cloth->m_nodes[0].m_v.y(), -9.81 / 60, 1e-4);
+}
+
+TEST(GnnSolver, ScaledClothGetsAScaledRestShape) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 2);
+    const double edge = solver.garmentOf(cloth)->mean_edge_length();
+    cloth->setRestLengthScale(1.5f);
+    world.step(1.0 / 60.0);
+    EXPECT_NEAR(solver.garmentOf(cloth)->mean_edge_length(), 1.5 * edge, 1e-5);
+    cloth->translate({1, 0, 0});  // makes the present lengths Bullet's rest lengths
+    world.step(1.0 / 60.0);
+    EXPECT_NEAR(solver.garmentOf(cloth)->mean_edge_length(), edge, 1e-5);
+}
+
+TEST(GnnSolver, GivenGarmentAndStepperAreUsed) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    const Garment garment("sheet", square_mesh(4), Fabric::real_cotton(), {0, 3});
+    btSoftBody* cloth = world.add(createGarmentSoftBody(world.info(), garment));
+    auto log = std::make_shared<FreeFall::Log>();
+    solver.attach(cloth, garment, free_fall(log));
+    world.step(1.0 / 60.0, 4);
+    EXPECT_EQ(log->dts.size(), 4u);
+    EXPECT_EQ(solver.garmentOf(cloth)->fabric().mu, Fabric::real_cotton().mu);
+    EXPECT_EQ(solver.garmentOf(cloth)->pins(), garment.pins());
+    btSoftBody* other = world.add(patch(world.info(), {0, 0, 0}, 6));
+    EXPECT_THROW(solver.attach(other, garment), ArgumentError);
+}
+
+TEST(GnnSolver, SubStepsOfOneCallAgreeWithSeparateCalls) {
+    std::vector<btVector3> results[2];
+    for (int i = 0; i < 2; ++i) {
+        btGnnSoftBodySolver solver(free_fall());
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 5, 1));
+        if (i == 0) world->stepSimulation(1.0f / 30, 8, 1.0f / 240);
+        if (i == 1) world.step(1.0 / 240.0, 8);
+        results[i] = positions(*cloth);
+    }
+    expect_same(results[0], results[1]);
+}
+
+TEST(GnnSolver, AttachNamesBodyNodeAndRemedy) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    const auto nan = std::numeric_limits<btScalar>::quiet_NaN();
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    cloth->setUserIndex(42);
+    cloth->m_nodes[7].m_x.setY(nan);
+    std::string error = attach_error(solver, cloth);
+    expect_contains(error, "soft body 42");
+    expect_contains(error, "node 7");
+    expect_contains(error, "not finite");
+    expect_contains(error, "Remedy: ");
+    btSoftBody* rope =
+        world.add(btSoftBodyHelpers::CreateRope(world.info(), {0, 0, 0}, {1, 0, 0}, 3, 0));
+    expect_contains(attach_error(solver, rope), "no faces");
+    btSoftBody* ball = world.add(
+        btSoftBodyHelpers::CreateEllipsoid(world.info(), {0, 1, 2}, {0.3f, 0.3f, 0.3f}, 64));
+    ball->m_cfg.kPR = 5;
+    expect_contains(attach_error(solver, ball), "pressure");
+    EXPECT_THROW(solver.attach(nullptr), ArgumentError);
+    EXPECT_THROW(btGnnSoftBodySolver(nullptr), ArgumentError);
+}
+
+TEST(GnnSolver, BodyWithNaNFromTheStartIsFrozenAndReportedUntilItIsMended) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    cloth->m_nodes[7].m_v.setX(std::numeric_limits<btScalar>::quiet_NaN());
+    world.step(1.0 / 60.0, 5);
+    EXPECT_EQ(solver.status().frozenBodies, 1);
+    ASSERT_EQ(solver.status().messages.size(), 1u);
+    expect_contains(solver.status().messages[0].text, "node 7");
+    EXPECT_EQ(node(*cloth, 0).y(), 0.0);
+    cloth->m_nodes[7].m_v.setZero();
+    world.step(1.0 / 60.0, 5);
+    EXPECT_EQ(solver.status().clothBodies, 1);
+    EXPECT_LT(node(*cloth, 0).y(), 0.0);
+}
+
+TEST(GnnSolver, NaNWrittenDuringTheRunIsPutBackAndReported) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 5);
+    cloth->m_nodes[3].m_x.setZ(std::numeric_limits<btScalar>::infinity());
+    cloth->addForce({std::numeric_limits<btScalar>::quiet_NaN(), 0, 0}, 5);
+    world.step(1.0 / 60.0, 5);
+    for (const btVector3& x : positions(*cloth)) {
+        ASSERT_TRUE(std::isfinite(x.x() + x.y() + x.z()));
+        EXPECT_NEAR(x.y(), -9.81 / 3600 * 55, 1e-4);
+    }
+    ASSERT_EQ(solver.status().messages.size(), 1u);
+    expect_contains(solver.status().messages[0].text, "put back");
+}
+
+TEST(GnnSolver, UnusableClothIsSteppedByBulletAndReportedOnce) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* fan = patch(world.info(), {0, 0, 0});
+    fan->appendFace(0, 1, 12);
+    fan->appendFace(0, 1, 13);
+    world.add(fan);
+    world.step(1.0 / 60.0, 10);
+    EXPECT_EQ(solver.status().bulletBodies, 1);
+    EXPECT_LT(node(*fan, 24).y(), -0.05);
+    ASSERT_EQ(solver.status().messages.size(), 1u);
+    EXPECT_EQ(solver.status().messages[0].count, 1);
+    expect_contains(solver.status().messages[0].text, "edge 0-1");
+}
+
+TEST(GnnSolver, AFactoryThatThrowsLeavesTheBodyToBullet) {
+    btGnnSoftBodySolver solver([](const Garment&) -> std::unique_ptr<Stepper> {
+        throw LoadError("weights.bin", "", "is missing", "train a network");
+    });
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    EXPECT_NO_THROW(world.step(1.0 / 60.0, 10));
+    EXPECT_LT(node(*cloth, 0).y(), -0.05);
+    ASSERT_EQ(solver.status().messages.size(), 1u);
+    expect_contains(solver.status().messages[0].text, "weights.bin");
+}
+
+TEST(GnnSolver, StepperThatKeepsFailingHandsTheBodyToBullet) {
+    auto log = std::make_shared<FreeFall::Log>();
+    log->fail_after = 5;
+    btGnnSoftBodySolver solver(free_fall(log));
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 5);
+    const double held = node(*cloth, 0).y();
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(node(*cloth, 0).y(), held);  // a failed step leaves the cloth where it was
+    world.step(1.0 / 60.0, 20);
+    EXPECT_EQ(solver.status().failedSteps, 3);
+    EXPECT_EQ(solver.status().bulletBodies, 1);
+    EXPECT_LT(node(*cloth, 0).y(), held - 0.1);
+    expect_contains(solver.status().messages.at(0).text, "free fall failed 3 times");
+    log->fail_after = -1;
+    solver.attach(cloth);
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(solver.status().clothBodies, 1);
+}
