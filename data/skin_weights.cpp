@@ -65,6 +65,24 @@ struct HeatSources {
     Eigen::MatrixXd shares;  ///< |V| x |joints|: p
 };
 
+/// Distances to the bones that a vertex sees, infinite to the others; returns the smallest. Where
+/// it sees none (inside the mouth) it is given all.
+double measure_bones(const std::vector<BoneSegment>& bones, const Vec3& x, const Vec3& normal,
+                     std::vector<double>& distances) {
+    constexpr double unseen = std::numeric_limits<double>::infinity();
+    double nearest = unseen;
+    for (bool ask_visibility : {true, false}) {
+        for (size_t b = 0; b < bones.size(); ++b) {
+            const Vec3 way = closest_on_segment(bones[b], x) - x;
+            const bool visible = !ask_visibility || way.dot(normal) < 0.0;
+            distances[b] = visible ? way.norm() : unseen;
+            nearest = std::min(nearest, distances[b]);
+        }
+        if (nearest < unseen) break;
+    }
+    return nearest;
+}
+
 HeatSources find_sources(const TriMesh& skin, const std::vector<BoneSegment>& bones,
                          int joint_count, double heat) {
     const Eigen::Index n = skin.vertices.rows();
@@ -73,14 +91,7 @@ HeatSources find_sources(const TriMesh& skin, const std::vector<BoneSegment>& bo
     std::vector<double> distances(bones.size());
     for (Eigen::Index i = 0; i < n; ++i) {
         const Vec3 x = skin.vertices.row(i), normal = normals.row(i);
-        double nearest = std::numeric_limits<double>::infinity();
-        for (size_t b = 0; b < bones.size(); ++b) {
-            const Vec3 way = closest_on_segment(bones[b], x) - x;
-            const bool inwards = way.dot(normal) < 0.0;
-            distances[b] = inwards ? way.norm() : std::numeric_limits<double>::infinity();
-            nearest = std::min(nearest, distances[b]);
-        }
-        if (!std::isfinite(nearest)) continue;
+        const double nearest = measure_bones(bones, x, normal, distances);
         int sharing = 0;
         for (double distance : distances) sharing += distance <= nearest * same_distance;
         for (size_t b = 0; b < bones.size(); ++b)
@@ -137,8 +148,8 @@ SkinWeights heat_weights(const TriMesh& skin, const std::vector<BoneSegment>& bo
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) matrix.coeffRef(i, i) += rates[i];
     const Eigen::SimplicialLDLT<SparseMatrix> solver(matrix);
     if (solver.info() != Eigen::Success || solver.vectorD().minCoeff() <= 0.0)
-        throw ArgumentError("skin", "has a part that sees no bone",
-                            "put a bone inside each connected part of the surface");
+        throw ArgumentError("skin", "the heat equation cannot be solved on it",
+                            "remove faces without area and vertices that are not finite");
     const Eigen::MatrixXd dense = solver.solve(rates.asDiagonal() * sources.shares);
     return sparse_weights(dense.cwiseMax(0.0), settings.max_influences, settings.threshold);
 }

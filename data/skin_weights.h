@@ -42,9 +42,11 @@ struct HeatWeightSettings {
 ///     (L + M H) w_j = M H p_j
 ///
 /// with the cotangent Laplacian L, vertex areas M, H = heat / d^2 for the distance d to the nearest
-/// bone that the vertex sees (0 if it sees none), and p_j = 1 where that bone moves with joint j.
-/// A vertex sees a bone if the way to it starts inwards and stays inside the body.
-/// @throws ArgumentError if the mesh cannot be solved for (no faces, a part that sees no bone)
+/// bone that the vertex sees, and p_j = 1 where that bone moves with joint j. A vertex sees a bone
+/// if the way to it starts inwards: this keeps the flank from following the arm beside it, and
+/// needs no ray through the body.
+/// @param bones  inside the body; at least one
+/// @throws ArgumentError if there are no faces or no bones, or the system cannot be solved
 SkinWeights heat_weights(const TriMesh& skin, const std::vector<BoneSegment>& bones,
                          int joint_count, const HeatWeightSettings& settings = {});
 
