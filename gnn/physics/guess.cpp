@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "collision/resolve.h"
+
 namespace cloth {
 
 void linear_extrapolation(const ClothState& state, double dt, Points& x) {
@@ -11,13 +13,7 @@ void linear_extrapolation(const ClothState& state, double dt, Points& x) {
 void projected_extrapolation(const ClothState& state, const SurfaceContacts& contacts, double dt,
                              double contact_distance, Points& x) {
     linear_extrapolation(state, dt, x);
-    const Eigen::Index count = static_cast<Eigen::Index>(contacts.obstacle.size());
-    for (Eigen::Index i = 0; i < count; ++i) {
-        if (!contacts.has(i)) continue;
-        const Eigen::RowVector3d normal = contacts.normal1.row(i);
-        const double distance = (x.row(i) - contacts.point1.row(i)).dot(normal);
-        if (distance < contact_distance) x.row(i) += (contact_distance - distance) * normal;
-    }
+    if (!contacts.obstacle.empty()) project_out(contacts, contact_distance, x);
 }
 
 void place_pins(const Garment& garment, const Boundary& boundary, Points& x) {

@@ -1,0 +1,90 @@
+#include "gnn/physics/quasi_newton_stepper.h"
+
+#include <chrono>
+
+#include "collision/resolve.h"
+#include "gnn/physics/guess.h"
+
+namespace cloth {
+namespace {
+
+// The contact energy keeps cloth at the contact distance; what ends closer than this was missed by
+// it (a vertex that left the plane of its face) and is moved by the last safety.
+constexpr double safety_distance = 5e-4;  // m
+
+class StopWatch {
+ public:
+    /// Time since the last lap (ms).
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::duration<double, std::milli> passed = now - m_last;
+        m_last = now;
+        return passed.count();
+    }
+
+ private:
+    std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
+};
+
+StepReport failed() {
+    StepReport report;
+    report.finite = false;
+    return report;
+}
+
+}  // namespace
+
+QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewtonSettings& settings,
+                                       const ProximitySettings& proximity)
+    : m_garment(&garment),
+      m_potential(garment, settings.potential),
+      m_solver(garment, settings),
+      m_proximity(proximity) {
+}
+
+std::string QuasiNewtonStepper::name() const {
+    return "quasi-newton-" + std::to_string(m_solver.settings().iterations);
+}
+
+StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothState& state) {
+    if (!is_valid_step(*m_garment, state, boundary, dt)) return failed();
+    StepReport report;
+    StopWatch watch;
+    find_contacts(boundary, state);
+    report.times.proximity = watch.lap();
+
+    m_potential.begin_step(state, boundary, m_contacts, dt);
+    starting_guess(*m_garment, state, boundary, m_contacts, dt,
+                   m_potential.settings().contact_distance, m_x);
+    const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
+    if (!minimum.finite) return failed();
+    report.iterations = minimum.iterations;
+    report.residual = minimum.residual;
+    report.converged = minimum.converged;
+    report.times.solve = watch.lap();
+
+    resolve(boundary, report);
+    report.times.contact = watch.lap();
+    m_v = (m_x - state.x) / dt;
+    if (!m_x.allFinite() || !m_v.allFinite()) return failed();
+    state.x = m_x;
+    state.v = m_v;
+    state.time += dt;
+    return report;
+}
+
+void QuasiNewtonStepper::find_contacts(const Boundary& boundary, const ClothState& state) {
+    if (boundary.obstacles.empty())
+        m_contacts.obstacle.clear();
+    else
+        m_proximity.query(state.x, boundary, m_contacts);
+}
+
+void QuasiNewtonStepper::resolve(const Boundary& boundary, StepReport& report) {
+    const ResolveReport resolved =
+        resolve_penetration(m_proximity, boundary, safety_distance, m_x, m_contacts);
+    report.max_penetration = resolved.max_depth_after;
+    place_pins(*m_garment, boundary, m_x);
+}
+
+}  // namespace cloth

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "collision/proximity.h"
+#include "gnn/physics/quasi_newton.h"
+#include "gnn/stepper.h"
+
+namespace cloth {
+
+/// A fixed number of quasi-Newton iterations per step, from the projected extrapolation: nearest
+/// surface points, guess, iterations, and a last safety that leaves no vertex inside an obstacle.
+///
+///     QuasiNewtonSettings settings;
+///     settings.iterations = 5;
+///     QuasiNewtonStepper stepper(garment, settings);
+///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
+///
+/// Accepts any time step; a change of it costs one factorisation.
+class QuasiNewtonStepper : public Stepper {
+ public:
+    /// Keeps a reference to `garment`.
+    /// @throws ArgumentError if a setting is out of range
+    QuasiNewtonStepper(const Garment& garment, const QuasiNewtonSettings& settings,
+                       const ProximitySettings& proximity = {});
+
+    /// "quasi-newton-K" with K iterations.
+    std::string name() const override;
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+
+ private:
+    void find_contacts(const Boundary& boundary, const ClothState& state);
+    void resolve(const Boundary& boundary, StepReport& report);
+
+    const Garment* m_garment;
+    IncrementalPotential m_potential;
+    QuasiNewton m_solver;
+    Proximity m_proximity;
+    SurfaceContacts m_contacts;
+    Points m_x, m_v;  ///< |V| x 3: the new positions and velocities
+};
+
+}  // namespace cloth
