@@ -32,6 +32,9 @@ tr:first-child th { vertical-align: bottom; border-bottom: 2px solid #888; }
 th:first-child { text-align: left; white-space: nowrap; } th small { font-weight: normal; }
 th i { display: inline-block; width: 0.8em; height: 0.8em; margin-right: 0.5em; }
 tr:nth-child(odd) td, tr:nth-child(odd) th { background: #f7f7f7; }
+.plots { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(540px, 100%), 1fr));
+         gap: 0 2em; }
+.failed { color: #b00; }
 tr td.best { font-weight: bold; background: #cdeccf; }
 dl { font-size: 0.85em; color: #444; display: grid; grid-template-columns: max-content auto;
      gap: 0 1em; } dt { font-weight: bold; } dd { margin: 0; }
@@ -147,7 +150,7 @@ std::string scene_text(const json& report, const std::string& field) {
     if (!scene.contains(field) || scene.at(field).is_null()) return "&ndash;";
     const json& value = scene.at(field);
     if (value.is_string()) return escaped(value.get<std::string>());
-    if (value.is_number()) return short_number(value.get<double>());
+    if (value.is_number()) return fixed_text(value.get<double>(), 3);
     return escaped(value.dump());
 }
 
@@ -156,7 +159,7 @@ std::string heading_html(const json& report) {
     return "<h1>" + scene_text(report, "garment") + " on motion " + scene_text(report, "motion") +
            "</h1>\n<p class=\"scene\">" + scene_text(report, "vertices") + " vertices, " +
            scene_text(report, "faces") + " faces; " + scene_text(report, "frames") +
-           " frames of 1/" + short_number(std::round(1.0 / dt)) +
+           " frames of 1/" + (dt > 0.0 ? fixed_text(1.0 / dt, 1) : "&ndash;") +
            " s; fabric: " + scene_text(report, "fabric") + "; " + scene_text(report, "machine") +
            ", " + scene_text(report, "threads") + " threads</p>\n";
 }
@@ -190,7 +193,7 @@ std::string failures_html(const json& report) {
                                     ? ": " + solver.at("failure").get<std::string>()
                                     : "";
         html += "<li><b>" + escaped(solver.at("name")) + "</b> fails in frame " +
-                short_number(frame) + escaped(how) + "</li>\n";
+                fixed_text(frame, 0) + escaped(how) + "</li>\n";
     }
     return html.empty() ? "<li>No solver fails.</li>\n" : html;
 }
@@ -278,8 +281,8 @@ std::string notes_html(const json& report) {
     const double frames = number_at(report, "/scene/frames");
     const double known = number_at(report, "/scene/reference_frames");
     if (known < frames)
-        html += "<li>References are dear: they cover the first " + short_number(known) + " of " +
-                short_number(frames) +
+        html += "<li>References are dear: they cover the first " + fixed_text(known, 0) + " of " +
+                fixed_text(frames, 0) +
                 " frames. Errors and gaps are known for these only; times, penetration, stretch "
                 "and jitter are of all frames.</li>\n";
     const json* reference = solver_named(report, "reference");
@@ -297,8 +300,7 @@ std::string notes_html(const json& report) {
     return html +
            "<li>The minimum of a step is the lowest energy that the reference reaches. Where it "
            "is not quite converged a gap can come out slightly below 0.</li>\n"
-           "<li>Times are wall-clock times of this machine with nothing else to do; the first "
-           "steps, which allocate memory, are not counted.</li>\n"
+           "<li>Times are wall-clock times: what else the machine did meanwhile is in them.</li>\n"
            "<li>Best values are marked among the solvers that do not fail; the reference does not "
            "take part, since the others are measured against it. A dash stands for what was not "
            "or could not be measured.</li>\n</ul>\n";
@@ -313,7 +315,8 @@ std::string report_html(const json& report, const ReportPictures& pictures) {
            scene_text(report, "garment") + " on motion " + scene_text(report, "motion") +
            "</title>\n<style>" + kStyle + "</style>\n</head>\n<body>\n" + heading_html(report) +
            summary_html(report) + pictures_html(pictures) + tables_html(report) +
-           "<h2>Diagrams</h2>\n" + plots_html(report) + notes_html(report) + "</body>\n</html>\n";
+           "<h2>Diagrams</h2>\n<div class=\"plots\">\n" + plots_html(report) + "</div>\n" +
+           notes_html(report) + "</body>\n</html>\n";
 }
 
 }  // namespace cloth

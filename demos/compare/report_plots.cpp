@@ -25,7 +25,7 @@ std::vector<double> numbers_at(const json& solver, const std::string& path) {
     return values;
 }
 
-/// Whether the values span so much that a linear axis would hide the smaller ones.
+/// Whether the values span so much that a linear axis would hide the smallest series.
 bool spans_decades(const std::vector<Series>& series) {
     double low = std::numeric_limits<double>::infinity(), high = 0.0;
     for (const Series& s : series) {
@@ -35,9 +35,9 @@ bool spans_decades(const std::vector<Series>& series) {
         if (values.empty()) continue;
         std::sort(values.begin(), values.end());
         low = std::min(low, values[values.size() / 2]);
-        high = std::max(high, values[values.size() / 2]);
+        high = std::max(high, values.back());
     }
-    return high > 15.0 * low;
+    return high > 30.0 * low;
 }
 
 bool has_values(const std::vector<Series>& series) {
@@ -56,7 +56,8 @@ std::string figure_html(const std::vector<Series>& series, const PlotSettings& s
 
 /// One line per solver over the time of the motion.
 std::string per_frame_html(const json& report, const std::string& path, const std::string& title,
-                           const std::string& y_label, const std::string& caption) {
+                           const std::string& y_label, const std::string& caption,
+                           bool y_from_zero = true) {
     const double dt = report.at("scene").value("time_step", 1.0 / 30.0);
     std::vector<Series> series;
     int k = 0;
@@ -75,6 +76,7 @@ std::string per_frame_html(const json& report, const std::string& path, const st
     settings.x_label = "time of the motion (s)";
     settings.y_label = y_label;
     settings.y_scale = spans_decades(series) ? Scale::logarithmic : Scale::linear;
+    settings.y_from_zero = y_from_zero;
     return figure_html(series, settings, caption);
 }
 
@@ -124,7 +126,8 @@ std::string plots_html(const json& report) {
                           "depth (mm)", "Deepest vertex of the garment below the body's skin.") +
            per_frame_html(report, "/series/stretch_p99", "Stretch of the garment",
                           "edge length / rest length",
-                          "The length, relative to its rest length, that 1 % of the edges exceed.");
+                          "The length, relative to its rest length, that 1 % of the edges exceed.",
+                          /*y_from_zero=*/false);
 }
 
 }  // namespace cloth

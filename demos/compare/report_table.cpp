@@ -1,6 +1,8 @@
 #include "demos/compare/report_table.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 
 #include "render/plot.h"
@@ -37,6 +39,13 @@ double best_of(const nlohmann::json& solvers, const ReportColumn& column) {
                                                      : std::numeric_limits<double>::quiet_NaN();
 }
 
+/// The frame in which a solver failed, beside its name.
+std::string failure_html(const nlohmann::json& solver) {
+    const double frame = number_at(solver, "/first_failed_frame");
+    if (std::isnan(frame)) return "";
+    return " <small class=\"failed\">fails in frame " + fixed_text(frame, 0) + "</small>";
+}
+
 std::string explanations_html(const std::vector<ReportColumn>& columns) {
     std::string html = "<dl>";
     for (const ReportColumn& column : columns)
@@ -61,7 +70,14 @@ std::string short_number(double value) {
         return fixed_text(value / std::pow(10.0, exponent), 1) + "&middot;10<sup>" +
                std::to_string(exponent) + "</sup>";
     }
-    return fixed_text(value, size >= 100 ? 0 : size >= 10 ? 1 : size >= 1 ? 2 : 3);
+    const int digits = size >= 99.95 || size == 0.0 ? 0
+                       : size >= 9.995              ? 1
+                       : size >= 0.9995             ? 2
+                                                    : 3;
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
+                                   std::chars_format::fixed, digits);
+    return {text.data(), end.ptr};
 }
 
 bool competes(const nlohmann::json& solver) {
@@ -76,7 +92,7 @@ std::string table_html(const nlohmann::json& solvers, const std::vector<ReportCo
     int row = 0;
     for (const auto& solver : solvers) {
         html += "<tr><th><i style=\"background:" + category_colour(row++) + "\"></i>" +
-                escaped(name_of(solver)) + "</th>";
+                escaped(name_of(solver)) + failure_html(solver) + "</th>";
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const double value = number_at(solver, columns[c].path);
             const bool is_best = competes(solver) && value == best[c];
