@@ -54,13 +54,16 @@ StatisticsAccumulator::StatisticsAccumulator(FeatureLayout layout)
 }
 
 void StatisticsAccumulator::add(const MatrixF& features, const VectorF* mask) {
-    for (Eigen::Index i = 0; i < features.rows(); ++i) {
-        if (mask && (*mask)[i] == 0.0f) continue;
-        const Eigen::VectorXd row = features.row(i).transpose().cast<double>();
-        m_sum += row;
-        m_squares += row.cwiseAbs2();
-        m_count += 1.0;
+    if (!mask) {
+        m_sum += features.cast<double>().colwise().sum().transpose();
+        m_squares += features.cast<double>().cwiseAbs2().colwise().sum().transpose();
+        m_count += static_cast<double>(features.rows());
+        return;
     }
+    const Eigen::VectorXd weights = mask->cast<double>();
+    m_sum += features.cast<double>().transpose() * weights;
+    m_squares += features.cast<double>().cwiseAbs2().transpose() * weights;
+    m_count += weights.sum();
 }
 
 FeatureStatistics StatisticsAccumulator::statistics() const {

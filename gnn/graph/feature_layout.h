@@ -43,7 +43,7 @@ class StatisticsAccumulator {
  public:
     explicit StatisticsAccumulator(FeatureLayout layout);
 
-    /// Adds the rows of `features`, or only those with a nonzero `mask` where one is given.
+    /// Adds the rows of `features`, or only those where `mask` is 1 and not 0, if one is given.
     void add(const MatrixF& features, const VectorF* mask = nullptr);
 
     /// A column that (nearly) never varies gets deviation 1: it carries no information, and must

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnn/train/network.h"
+#include "gnn/train/optimizer.h"
+#include "gnn/train/recipe.h"
+#include "gnn/train/scene_random.h"
+#include "gnn/train/training_worlds.h"
+#include "gnn/train/validation.h"
+
+namespace cloth {
+
+struct TrainerSettings {
+    ModelConfig model;
+    Recipe recipe;
+    SceneSettings scenes;
+    ValidationSettings validation;
+    std::string device = "cpu";  ///< cpu or cuda
+    int threads = 1;             ///< of LibTorch
+    std::uint64_t seed = 1;
+    std::int64_t iterations = 0;            ///< end of training; 0: as many as fit into `minutes`
+    double minutes = 0.0;                   ///< wall time of training; 0: no limit
+    int pool = 40;                          ///< scenes trained on in turn, 1 to 1000
+    int report_every = 100;                 ///< iterations per row of metrics.csv
+    int validate_every = 500;               ///< iterations
+    double save_every = 3.0;                ///< minutes between checkpoints
+    std::int64_t freeze_statistics = 1000;  ///< iterations that shape the feature statistics
+    std::string out = "out/train";  ///< folder: checkpoint.pt, metrics.csv, weights.safetensors
+};
+
+/// Trains a network on the incremental potential, without ground truth.
+///
+///     Trainer trainer(settings);
+///     trainer.resume();  // if settings.out has a checkpoint
+///     trainer.run(stop);
+///
+/// Two trainings of equal settings and a given number of iterations on one processor give equal
+/// bits, whether or not one of them was stopped and resumed. (Limited by `minutes` the learning
+/// rate follows the clock.)
+class Trainer {
+ public:
+    /// @throws ArgumentError for settings out of range, LoadError if `out` cannot be written
+    explicit Trainer(TrainerSettings settings);
+    ~Trainer();
+
+    /// Goes on from the checkpoint in `out`. False: there is none.
+    /// @throws LoadError if it is broken or of another configuration
+    bool resume();
+
+    /// Trains until the end or until `stop` is set; saves checkpoint and weights.
+    void run(const std::atomic<bool>& stop);
+
+    /// One iteration; the loss of its last step.
+    double iterate();
+
+    void save();
+    Weights weights() const { return m_network.export_weights(); }
+    Network& network() { return m_network; }
+    std::int64_t iteration() const { return m_iteration; }
+
+ private:
+    struct Sums;
+
+    double progress() const;
+    bool is_done() const;
+    void fill_pool();
+    void replace(size_t slot);
+    void observe(const TrainingScene& scene);
+    void add_noise(ClothState& state);
+    bool train_on(TrainingScene& scene, Points& prediction, Points& target);
+    bool move_on(TrainingScene& scene, const Points& prediction, const Points& target);
+    void report(bool last);
+    void write_row(const ValidationResult* validation);
+    void load(const std::string& file);
+
+    TrainerSettings m_settings;
+    torch::Device m_device;
+    Network m_network;
+    Adam m_adam;
+    SceneRandom m_random;
+    SceneFactory m_factory;
+    std::vector<std::unique_ptr<TrainingScene>> m_pool;
+    std::unique_ptr<Validation> m_validation;
+    StatisticsAccumulator m_node, m_edge, m_world, m_body;
+    std::int64_t m_iteration = 0;
+    double m_seconds = 0.0;  ///< trained so far
+    LossValue m_loss;
+    std::unique_ptr<Sums> m_sums;
+};
+
+}  // namespace cloth

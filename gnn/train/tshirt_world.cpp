@@ -1,0 +1,72 @@
+#include "gnn/train/tshirt_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cloth {
+
+namespace {
+
+class BodyWorld : public TrainingWorld {
+ public:
+    BodyWorld(std::shared_ptr<const AnimatedBody> body, const Eigen::Matrix3d& turn)
+        : m_body(std::move(body)), m_turn(turn) {}
+
+    void boundary(double time, double dt, Boundary& out) override {
+        out.obstacles.resize(1);
+        out.obstacles[0] = m_body->obstacle(time, time + dt);
+        out.obstacles[0].x0 = (out.obstacles[0].x0 * m_turn.transpose()).eval();
+        out.obstacles[0].x1 = (out.obstacles[0].x1 * m_turn.transpose()).eval();
+        out.pin_targets.resize(0, 3);
+    }
+
+ private:
+    std::shared_ptr<const AnimatedBody> m_body;
+    Eigen::Matrix3d m_turn;
+};
+
+}  // namespace
+
+SceneParts make_body_parts(std::shared_ptr<const Garment> garment,
+                           std::shared_ptr<const AnimatedBody> body, double yaw) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(yaw, Vec3::UnitY()).toRotationMatrix();
+    SceneParts parts;
+    parts.kind = "tshirt";
+    parts.start = ClothState::at_rest(*garment);
+    parts.start.x = (parts.start.x * turn.transpose()).eval();
+    parts.garment = std::move(garment);
+    parts.world = std::make_unique<BodyWorld>(std::move(body), turn);
+    return parts;
+}
+
+Motion motion_from(const Motion& motion, int frame, int least) {
+    Motion part = motion;
+    const int first = std::clamp(frame, 0, std::max(0, motion.frame_count() - least));
+    part.frames.erase(part.frames.begin(), part.frames.begin() + first);
+    return part;
+}
+
+Points carry_garment(const Points& garment, const Points& skin_before, const Points& skin_after) {
+    const double width = 0.03;  // smooth over 3 cm of skin
+    const Points displacement = skin_after - skin_before;
+    Points carried = garment;
+    VectorX squared(skin_before.rows());
+    for (Eigen::Index i = 0; i < garment.rows(); ++i) {
+        squared = (skin_before.rowwise() - garment.row(i)).rowwise().squaredNorm();
+        const double nearest = squared.minCoeff();
+        Vec3 sum = Vec3::Zero();
+        double weights = 0.0;
+        for (Eigen::Index k = 0; k < squared.size(); ++k) {
+            const double exponent = (squared[k] - nearest) / (2.0 * width * width);
+            if (exponent > 9.0) continue;
+            const double weight = std::exp(-exponent);
+            sum += weight * displacement.row(k).transpose();
+            weights += weight;
+        }
+        carried.row(i) += (sum / weights).transpose();
+    }
+    return carried;
+}
+
+}  // namespace cloth

@@ -1,0 +1,92 @@
+#include "gnn/train/validation.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "data/paths.h"
+
+namespace cloth {
+
+static const double full_contact_weight = PotentialSettings().contact_weight;
+
+Points to_positions(const TrainingScene& scene, const torch::Tensor& output) {
+    const torch::Tensor values = output.detach().to(torch::kCPU).contiguous();
+    const Eigen::Map<const MatrixF> map(values.data_ptr<float>(), values.size(0), 3);
+    const Features& features = scene.features();
+    Points x = features.base + features.scale * map.cast<double>();
+    for (int pin : scene.garment().pins()) x.row(pin) = features.base.row(pin);
+    return x;
+}
+
+/// A walk and a run of the shared data folder, else the jump of assimp-testmodels.
+static std::vector<std::string> held_out_clips() {
+    if (shared_data_path("motions/validation")) return {"07_02", "16_35"};
+    return {"01_01"};
+}
+
+Validation::Validation(const SceneFactory& factory, ValidationSettings settings)
+    : m_settings(settings) {
+    if (factory.has_tshirts() && settings.tshirt_states > 0) {
+        const std::vector<std::string> clips = held_out_clips();
+        const int each = std::max(1, settings.tshirt_states / static_cast<int>(clips.size()));
+        for (const std::string& clip : clips)
+            add_states(factory.make_tshirt(1, clip, settings.garment), 32, 6, each);
+    }
+    for (int k = 0; k < settings.sheet_states; k += 2)
+        add_states(factory.make_sheet(0x7e57000000ull + static_cast<std::uint64_t>(k)), 5, 10, 2);
+}
+
+void Validation::add_states(std::shared_ptr<TrainingScene> scene, int first_frame, int every,
+                            int count) {
+    const int last = first_frame + every * (count - 1);
+    for (int frame = 0; frame <= last; ++frame) {
+        scene->prepare(full_contact_weight);
+        Points x = scene->features().base;
+        if (frame >= first_frame && (frame - first_frame) % every == 0) {
+            Points least = x;
+            m_states.push_back({scene, scene->state,
+                                scene->refine(least, m_settings.minimum_iterations),
+                                scene->potential().value(x)});
+        }
+        scene->refine(x, m_settings.rollout_iterations);
+        if (!scene->advance(x)) return;
+    }
+}
+
+static GapSummary summarise(std::vector<double> gaps) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    if (gaps.empty()) return {nan, nan};
+    std::sort(gaps.begin(), gaps.end());
+    const size_t n = gaps.size();
+    return {0.5 * (gaps[(n - 1) / 2] + gaps[n / 2]), gaps[std::min(n - 1, n * 95 / 100)]};
+}
+
+template <typename Predict>
+ValidationResult Validation::measure_with(Predict predict) {
+    std::vector<double> tshirt, sheet;
+    for (const State& state : m_states) {
+        state.scene->state = state.state;
+        state.scene->prepare(full_contact_weight);
+        const double energy = state.scene->potential().value(predict(*state.scene));
+        const double gap = (energy - state.least) / std::max(state.base - state.least, 1e-12);
+        (state.scene->parts().kind == "sheet" ? sheet : tshirt).push_back(gap);
+    }
+    return {summarise(tshirt), summarise(sheet)};
+}
+
+ValidationResult Validation::measure(Network& network) {
+    torch::NoGradGuard no_grad;
+    return measure_with([&](const TrainingScene& scene) {
+        return to_positions(scene, network.forward(scene.graph(), scene.features()));
+    });
+}
+
+ValidationResult Validation::measure_solver(int iterations) {
+    return measure_with([&](TrainingScene& scene) {
+        Points x = scene.features().base;
+        scene.refine(x, iterations);
+        return x;
+    });
+}
+
+}  // namespace cloth

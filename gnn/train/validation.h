@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gnn/train/network.h"
+#include "gnn/train/training_worlds.h"
+
+namespace cloth {
+
+struct ValidationSettings {
+    int tshirt_states = 8;  ///< of a T-shirt on a clip that is never trained on
+    int sheet_states = 8;
+    int rollout_iterations = 12;  ///< of the solver that makes the states
+    int minimum_iterations = 80;  ///< of the solver that finds the least energy
+    size_t garment = 99;          ///< index into the factory's T-shirts, the last if out of range
+};
+
+/// One-step energy gaps (E(x) - Emin) / (E(base) - Emin) over fixed states.
+struct GapSummary {
+    double median = 0.0, p95 = 0.0;
+};
+
+struct ValidationResult {
+    GapSummary tshirt, sheet;  ///< NaN without states
+};
+
+/// Fixed states that are never trained on, with the least energy of each.
+class Validation {
+ public:
+    Validation(const SceneFactory& factory, ValidationSettings settings);
+
+    ValidationResult measure(Network& network);
+    /// The same for the solver alone, for comparison.
+    ValidationResult measure_solver(int iterations);
+
+ private:
+    struct State {
+        std::shared_ptr<TrainingScene> scene;
+        ClothState state;
+        double least = 0.0, base = 0.0;
+    };
+    void add_states(std::shared_ptr<TrainingScene> scene, int first_frame, int every, int count);
+    template <typename Predict>
+    ValidationResult measure_with(Predict predict);
+
+    ValidationSettings m_settings;
+    std::vector<State> m_states;
+};
+
+/// Predicted positions (|V| x 3, m) of a prepared scene; pinned vertices stay at their targets.
+Points to_positions(const TrainingScene& scene, const torch::Tensor& output);
+
+}  // namespace cloth
