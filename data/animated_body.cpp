@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include "data/errors.h"
@@ -10,12 +9,6 @@
 namespace cloth {
 
 using Eigen::Quaterniond;
-
-struct AnimatedBody::Cache {
-    std::mutex mutex;
-    double time = -1.0;
-    Points vertices;
-};
 
 namespace {
 
@@ -75,10 +68,10 @@ void validate(const Motion& motion, const AnimationSettings& settings) {
 
 AnimatedBody::AnimatedBody(std::shared_ptr<const Body> body, const Motion& motion,
                            const AnimationSettings& settings)
-    : m_body(std::move(body)),
+    : MovingSurface(settings.friction),
+      m_body(std::move(body)),
       m_settings(settings),
-      m_frame_time(motion.frame_time),
-      m_cache(std::make_shared<Cache>()) {
+      m_frame_time(motion.frame_time) {
     validate(motion, settings);
     m_keys = retarget(*m_body, motion, settings.retarget);
     const int last = static_cast<int>(m_keys.size()) - 1;
@@ -96,10 +89,6 @@ AnimatedBody::AnimatedBody(std::shared_ptr<const Body> body, const Motion& motio
 double AnimatedBody::duration() const {
     const double motion_time = m_frame_time * (static_cast<double>(m_keys.size()) - 1.0);
     return m_settings.lead_in + 0.5 * m_settings.start_ramp + motion_time;
-}
-
-int AnimatedBody::frame_count(double dt) const {
-    return static_cast<int>(std::floor(duration() / dt + 1e-6)) + 1;
 }
 
 BodyPose AnimatedBody::motion_pose(double motion_time) const {
@@ -132,28 +121,6 @@ JointTransforms AnimatedBody::joint_transforms(double time) const {
 
 Points AnimatedBody::vertices(double time) const {
     return m_body->skin(joint_transforms(time));
-}
-
-Points AnimatedBody::cached_vertices(double time) const {
-    {
-        const std::lock_guard<std::mutex> lock(m_cache->mutex);
-        if (std::abs(m_cache->time - time) < 1e-9 && m_cache->vertices.rows() > 0)
-            return m_cache->vertices;
-    }
-    Points points = vertices(time);
-    const std::lock_guard<std::mutex> lock(m_cache->mutex);
-    m_cache->time = time;
-    m_cache->vertices = points;
-    return points;
-}
-
-Obstacle AnimatedBody::obstacle(double t0, double t1) const {
-    Obstacle obstacle;
-    obstacle.faces = faces();
-    obstacle.friction = m_settings.friction;
-    obstacle.x0 = cached_vertices(t0);
-    obstacle.x1 = cached_vertices(t1);
-    return obstacle;
 }
 
 }  // namespace cloth

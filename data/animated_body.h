@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "data/boundary.h"
+#include "data/moving_surface.h"
 #include "data/retarget.h"
 
 namespace cloth {
@@ -20,11 +20,11 @@ struct AnimationSettings {
 /// A body that moves: first from the rest pose into the motion (lead-in), then through it. Poses
 /// between keys are interpolated with continuous velocity, so any time step may be used.
 ///
-///     AnimatedBody body(std::make_shared<Body>(Body::load_default()),
-///     load_motion_by_name("01_01")); boundary.obstacles = {body.obstacle(t, t + dt)};
+///     AnimatedBody walker(std::make_shared<Body>(Body::load_default()), motion);
+///     boundary.obstacles = {walker.obstacle(t, t + dt)};
 ///
 /// Times (s) below 0 give the rest pose, times after duration() the last pose.
-class AnimatedBody {
+class AnimatedBody : public MovingSurface {
  public:
     /// @throws LoadError if the motion's skeleton cannot be mapped to the body's
     AnimatedBody(std::shared_ptr<const Body> body, const Motion& motion,
@@ -33,25 +33,17 @@ class AnimatedBody {
     const Body& body() const { return *m_body; }
     const AnimationSettings& settings() const { return m_settings; }
 
+    std::shared_ptr<const Faces> faces() const override { return m_body->faces(); }
+    /// Skin vertices (|V| x 3, m).
+    Points vertices(double time) const override;
     /// Lead-in and motion together (s).
-    double duration() const;
-    /// Number of poses at times 0, dt, 2 dt, ... up to duration().
-    int frame_count(double dt) const;
+    double duration() const override;
 
     BodyPose pose(double time) const;
     /// Where each joint moves the skin (|joints|); identities at time 0.
     JointTransforms joint_transforms(double time) const;
-    /// Skin vertices (|V| x 3, m).
-    Points vertices(double time) const;
-    std::shared_ptr<const Faces> faces() const { return m_body->faces(); }
-
-    /// The skin as an obstacle of a step from t0 to t1. The last pose is kept, so consecutive steps
-    /// cost one skinning each. Safe to call from several threads.
-    Obstacle obstacle(double t0, double t1) const;
 
  private:
-    struct Cache;
-    Points cached_vertices(double time) const;
     BodyPose motion_pose(double motion_time) const;
 
     std::shared_ptr<const Body> m_body;
@@ -59,7 +51,6 @@ class AnimatedBody {
     double m_frame_time;
     std::vector<BodyPose> m_keys;
     std::vector<std::vector<Eigen::Quaterniond>> m_tangents;  ///< |keys| x |joints|, for squad
-    std::shared_ptr<Cache> m_cache;
 };
 
 }  // namespace cloth

@@ -5,6 +5,7 @@
 #include "data/errors.h"
 #include "data/mesh_io.h"
 #include "data/paths.h"
+#include "data/skinning.h"
 
 namespace cloth {
 
@@ -80,19 +81,10 @@ Points Body::skin(const JointTransforms& transforms) const {
     if (transforms.size() != m_joints.size())
         throw ArgumentError("transforms", "there is not one per joint",
                             "give " + std::to_string(m_joints.size()) + " transforms");
-    return skin_points(m_rest, *m_weights, transforms);
-}
-
-Points skin_points(const Points& rest, const SkinWeights& weights,
-                   const JointTransforms& transforms) {
-    Points posed(rest.rows(), 3);
-    for (int i = 0; i < weights.vertex_count(); ++i) {
-        Eigen::Matrix<double, 3, 4> blend = Eigen::Matrix<double, 3, 4>::Zero();
-        for (int k = weights.begin[i]; k < weights.begin[i + 1]; ++k)
-            blend += weights.values[k] * transforms[weights.joints[k]].matrix().topRows<3>();
-        posed.row(i) = (blend.leftCols<3>() * rest.row(i).transpose() + blend.col(3)).transpose();
-    }
-    return posed;
+    std::vector<SkinMatrix> matrices;
+    for (const Eigen::Isometry3d& transform : transforms)
+        matrices.emplace_back(transform.matrix().topRows<3>());
+    return skin_points(m_rest, *m_weights, matrices);
 }
 
 }  // namespace cloth

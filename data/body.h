@@ -73,10 +73,4 @@ class Body {
     std::vector<BoneSegment> m_bones;
 };
 
-/// Linear blend skinning: x'_i = sum over joints of weight x (transform * x_i).
-/// @param rest        |V| x 3 (m)
-/// @param transforms  one per joint that `weights` names
-Points skin_points(const Points& rest, const SkinWeights& weights,
-                   const JointTransforms& transforms);
-
 }  // namespace cloth
