@@ -63,15 +63,20 @@ TEST(Proximity, EqualsBruteForceOnTheHumanBody) {
     } catch (const LoadError& error) {
         GTEST_SKIP() << "needs Debian's assimp-testmodels: " << error.what();
     }
+#ifdef __SANITIZE_ADDRESS__
+    const Eigen::Index count = 40;  // brute force takes 40 times as long under the sanitizers
+#else
+    const Eigen::Index count = 300;
+#endif
     std::mt19937 random(5);
-    Points x(300, 3);
+    Points x(count, 3);
     for (Eigen::Index i = 0; i < x.rows(); ++i)
         x.row(i) = body.vertices.row(Eigen::Index(random() % size_t(body.vertices.rows()))) +
                    random_point(random, 0.04).transpose();
     const auto [found, inside] =
         expect_equals_brute_force(x, boundary_of({mesh_obstacle(body)}), 0.1);
-    EXPECT_EQ(found, 300);
-    EXPECT_GT(inside, 50);
+    EXPECT_EQ(found, count);
+    EXPECT_GT(inside, count / 6);
 }
 
 TEST(Proximity, PointsAreCarriedWithARigidMotion) {
