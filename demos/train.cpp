@@ -36,6 +36,7 @@ const char* const usage =
   --heal K            quasi-Newton iterations of a healed state (6)
   --pool N            scenes trained on in turn (40)
   --tshirt-share P    share of T-shirt scenes (0.65)
+  --garment FILE      train on this T-shirt of data/assets alone
   --seed S            (1)
   --threads N         of LibTorch (1)
   --device NAME       cpu or cuda (cpu)
@@ -88,6 +89,8 @@ void set_option(Options& o, const std::string& name, const std::string& text) {
         s.pool = static_cast<int>(number());
     else if (name == "--tshirt-share")
         s.scenes.tshirt_share = number();
+    else if (name == "--garment")
+        s.scenes.garments = {text};
     else if (name == "--seed")
         s.seed = static_cast<std::uint64_t>(number());
     else if (name == "--threads")

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -20,11 +21,18 @@ static double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Processor time of this process (s): unlike the clock on the wall it tells the cost of a stage on
+/// a busy machine.
+static double cpu_seconds() {
+    return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
 /// What a row of metrics.csv averages.
 struct Trainer::Sums {
     EnergyTerms terms;
     double loss = 0.0;
     std::vector<double> gaps;
+    double prepare_seconds = 0.0, network_seconds = 0.0, solver_seconds = 0.0;
     int count = 0, terms_count = 0, resets = 0;
     std::int64_t first_iteration = 0;
     double first_second = 0.0;
@@ -116,6 +124,7 @@ void Trainer::add_noise(ClothState& state) {
 
 bool Trainer::train_on(TrainingScene& scene, Points& prediction, Points& target) {
     const Recipe& recipe = m_settings.recipe;
+    double start = cpu_seconds();
     m_network.parameters().gradient().zero_();
     const Tensor output = m_network.forward(scene.graph(), scene.features());
     prediction = to_positions(scene, output);
@@ -124,19 +133,26 @@ bool Trainer::train_on(TrainingScene& scene, Points& prediction, Points& target)
     LossProblem problem{
         &scene.potential(), &scene.laplacian(), &scene.boundary(), &features.base, &target,
         features.scale};
+    m_sums->network_seconds += cpu_seconds() - start;
+    start = cpu_seconds();
     const bool from_base =
         scene.potential().value(features.base) <= scene.potential().value(prediction);
     target = from_base ? features.base : prediction;
     scene.refine(target, recipe.heal_iterations);
+    m_sums->solver_seconds += cpu_seconds() - start;
     evaluate_loss(recipe.loss, problem, prediction, m_loss);
     if (!std::isfinite(m_loss.value) || !m_loss.gradient.allFinite()) return false;
     const MatrixF gradient = (features.scale * m_loss.gradient).cast<float>();
     const Tensor seed =
         torch::from_blob(const_cast<float*>(gradient.data()), {gradient.rows(), 3}, torch::kFloat32)
             .to(m_device);
+    start = cpu_seconds();
     output.backward(seed);
-    return m_adam.step(m_network.parameters().flat(), m_network.parameters().gradient(),
-                       recipe.learning_rate(m_iteration, progress()), recipe.clip_norm);
+    const bool stepped =
+        m_adam.step(m_network.parameters().flat(), m_network.parameters().gradient(),
+                    recipe.learning_rate(m_iteration, progress()), recipe.clip_norm);
+    m_sums->network_seconds += cpu_seconds() - start;
+    return stepped;
 }
 
 bool Trainer::move_on(TrainingScene& scene, const Points& prediction, const Points& target) {
@@ -162,7 +178,9 @@ double Trainer::iterate() {
     for (int k = 0; k < recipe.rollout(m_iteration) && sound; ++k) {
         if (k > 0) sound = scene.advance(prediction);
         if (!sound) break;
+        const double start = cpu_seconds();
         scene.prepare(weight);
+        m_sums->prepare_seconds += cpu_seconds() - start;
         if (m_iteration < m_settings.freeze_statistics) observe(scene);
         sound = train_on(scene, prediction, target);
     }
@@ -247,6 +265,7 @@ void Trainer::write_row(const ValidationResult* validation) {
     std::ofstream csv(file, std::ios::app);
     if (is_new)
         csv << "iteration,seconds,iterations_per_second,learning_rate,loss,gap_training_median,"
+               "ms_prepare,ms_network,ms_solver,"
                "strain,bending,gravity,inertia,contact,friction,resets,"
                "gap_tshirt_median,gap_tshirt_p95,gap_sheet_median,gap_sheet_p95\n";
     const Sums& sums = *m_sums;
@@ -256,6 +275,8 @@ void Trainer::write_row(const ValidationResult* validation) {
     const double lr = m_settings.recipe.learning_rate(m_iteration, progress());
     const double loss = sums.loss / sums.count, gap = median(sums.gaps);
     csv << m_iteration << ',' << m_seconds << ',' << rate << ',' << lr << ',' << loss << ',' << gap
+        << ',' << 1e3 * sums.prepare_seconds / sums.count << ','
+        << 1e3 * sums.network_seconds / sums.count << ',' << 1e3 * sums.solver_seconds / sums.count
         << ',' << sums.terms.strain / n << ',' << sums.terms.bending / n << ','
         << sums.terms.gravity / n << ',' << sums.terms.inertia / n << ',' << sums.terms.contact / n
         << ',' << sums.terms.friction / n << ',' << sums.resets;
