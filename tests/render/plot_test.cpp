@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
-#include <regex>
+#include <sstream>
 
 #include "data/errors.h"
 
@@ -28,30 +30,36 @@ std::string path_of(const std::string& svg, int k = 0) {
 }
 
 /// The coordinates of a path, x and y in turn.
-std::vector<double> numbers_of(const std::string& path) {
-    std::vector<double> numbers;
-    const std::regex pattern("-?[0-9.]+");
-    for (std::sregex_iterator it(path.begin(), path.end(), pattern), end; it != end; ++it)
-        numbers.push_back(std::stod(it->str()));
-    return numbers;
+std::vector<double> numbers_of(std::string path) {
+    std::replace_if(
+        path.begin(), path.end(), [](char c) { return c == 'M' || c == 'L'; }, ' ');
+    std::istringstream stream(path);
+    return {std::istream_iterator<double>(stream), std::istream_iterator<double>()};
 }
 
 /// Every element is closed, in order: what an XML parser would insist on.
 bool is_well_formed(const std::string& svg) {
     std::vector<std::string> open;
-    const std::regex tag("<(/?)([a-z]+)([^<>]*?)(/?)>");
-    for (std::sregex_iterator it(svg.begin(), svg.end(), tag), end; it != end; ++it) {
-        const std::smatch& match = *it;
-        if (match[4].length()) continue;
-        if (!match[1].length()) {
-            open.push_back(match[2]);
-        } else {
-            if (open.empty() || open.back() != match[2]) return false;
-            open.pop_back();
-        }
+    for (std::size_t at = svg.find('<'); at != std::string::npos; at = svg.find('<', at + 1)) {
+        const std::size_t end = svg.find('>', at);
+        if (end == std::string::npos || svg.find('<', at + 1) < end) return false;
+        const bool closing = svg[at + 1] == '/';
+        const std::size_t start = at + (closing ? 2 : 1);
+        const std::string name = svg.substr(start, svg.find_first_of(" />", start) - start);
+        if (name.empty()) return false;
+        if (!closing && svg[end - 1] != '/') open.push_back(name);
+        if (!closing) continue;
+        if (open.empty() || open.back() != name) return false;
+        open.pop_back();
     }
-    const std::string rest = std::regex_replace(svg, tag, "");
-    return open.empty() && rest.find('<') == std::string::npos;
+    return open.empty();
+}
+
+TEST(PlotTest, ItsParserKnowsBrokenFromWhole) {
+    EXPECT_TRUE(is_well_formed("<a b=\"c\"><d/>text</a>"));
+    for (const char* broken : {"<a>", "<a><b></a></b>", "<a></a></a>", "<a <b>/>", "a < b"})
+        EXPECT_FALSE(is_well_formed(broken)) << broken;
+    EXPECT_EQ(numbers_of("M1 2.5L-3 4"), (std::vector<double>{1, 2.5, -3, 4}));
 }
 
 TEST(PlotAxis, LinearTicksAreRoundAndCoverTheValues) {
