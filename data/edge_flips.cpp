@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "data/mesh_quality.h"
+
 namespace cloth {
 
 namespace {
@@ -24,24 +26,13 @@ Vec3 area_vector(const Points& x, int a, int b, int c) {
     return u.cross(v);
 }
 
-double smallest_angle(const Points& x, int a, int b, int c) {
-    const int corners[3] = {a, b, c};
-    double smallest = M_PI;
-    for (int i = 0; i < 3; ++i) {
-        const Vec3 u = x.row(corners[(i + 1) % 3]) - x.row(corners[i]);
-        const Vec3 v = x.row(corners[(i + 2) % 3]) - x.row(corners[i]);
-        smallest = std::min(smallest, std::atan2(u.cross(v).norm(), u.dot(v)));
-    }
-    return smallest;
-}
-
 /// Whether the quad looks better with the edge p.opposite - q.opposite and stays as flat as before.
 bool flip_is_better(const Points& x, const Side& p, const Side& q) {
-    const double now = std::min(smallest_angle(x, p.from, p.to, p.opposite),
-                                smallest_angle(x, q.from, q.to, q.opposite));
-    const double then = std::min(smallest_angle(x, p.opposite, p.from, q.opposite),
-                                 smallest_angle(x, q.opposite, p.to, p.opposite));
-    if (then < now + 1e-6) return false;
+    const double now = std::min(smallest_angle(x, {p.from, p.to, p.opposite}),
+                                smallest_angle(x, {q.from, q.to, q.opposite}));
+    const double then = std::min(smallest_angle(x, {p.opposite, p.from, q.opposite}),
+                                 smallest_angle(x, {q.opposite, p.to, p.opposite}));
+    if (then < now + 1e-4) return false;
     const Vec3 outside = area_vector(x, p.from, p.to, p.opposite).normalized() +
                          area_vector(x, q.from, q.to, q.opposite).normalized();
     const Vec3 n0 = area_vector(x, p.opposite, p.from, q.opposite).normalized();

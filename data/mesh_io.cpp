@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "data/errors.h"
+#include "data/ply_length.h"
 #include "data/vertex_order.h"
 
 namespace cloth {
@@ -72,6 +73,7 @@ const aiScene& read_scene(const std::string& path, Assimp::Importer& importer) {
         throw LoadError(path, "", "there is no such file", "check the path");
     if (std::filesystem::file_size(path, error) == 0)
         throw LoadError(path, "", "the file is empty", "export or download it again");
+    if (extension_of(path) == "ply") check_ply_length(path);
     const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
     if (!scene)
         throw LoadError(path, "", std::string("cannot be read: ") + importer.GetErrorString(),

@@ -75,16 +75,21 @@ bool has_single_fans(const Faces& faces) {
 
 }  // namespace
 
+double smallest_angle(const Points& vertices, const Eigen::RowVector3i& face) {
+    double smallest = 180.0;
+    for (int c = 0; c < 3; ++c) {
+        const Vec3 corner = vertices.row(face[c]);
+        const Vec3 u = vertices.row(face[(c + 1) % 3]).transpose() - corner;
+        const Vec3 v = vertices.row(face[(c + 2) % 3]).transpose() - corner;
+        smallest = std::min(smallest, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / M_PI);
+    }
+    return smallest;
+}
+
 double smallest_angle(const TriMesh& mesh) {
     double smallest = 180.0;
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
-        for (int c = 0; c < 3; ++c) {
-            const Vec3 corner = mesh.vertices.row(mesh.faces(f, c));
-            const Vec3 u = mesh.vertices.row(mesh.faces(f, (c + 1) % 3)).transpose() - corner;
-            const Vec3 v = mesh.vertices.row(mesh.faces(f, (c + 2) % 3)).transpose() - corner;
-            const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-            smallest = std::min(smallest, angle * 180.0 / M_PI);
-        }
+        smallest = std::min(smallest, smallest_angle(mesh.vertices, mesh.faces.row(f)));
     return smallest;
 }
 

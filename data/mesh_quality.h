@@ -6,6 +6,9 @@
 
 namespace cloth {
 
+/// Smallest angle of one triangle (degrees).
+double smallest_angle(const Points& vertices, const Eigen::RowVector3i& face);
+
 /// Smallest angle of all triangles (degrees).
 double smallest_angle(const TriMesh& mesh);
 

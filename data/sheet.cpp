@@ -23,8 +23,19 @@ using Delaunay =
     CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase>>;
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kGoodAngle = 28.0;  // degrees at which the smoothing stops
+constexpr double kGoodAngle = 26.0;  // degrees at which the smoothing stops
 constexpr int kMaxRounds = 400;
+constexpr int kShakeEvery = 20;  // rounds: smoothing alone can come to rest at a bad triangle
+
+/// Numbers from 0 to 1, the same on every platform.
+class Random {
+ public:
+    explicit Random(unsigned seed) : m_engine(seed) {}
+    double operator()() { return static_cast<double>(m_engine() >> 11) * 0x1p-53; }
+
+ private:
+    std::mt19937_64 m_engine;
+};
 
 /// Points of the border first (they stay), then those of the inside.
 struct PointSet {
@@ -39,21 +50,68 @@ double edge_length(double width, double depth, int target) {
     return (-b - std::sqrt(b * b - 4.0 * a * c)) / (2.0 * a);
 }
 
-PointSet scatter(double width, double depth, int target, unsigned seed) {
-    const double h = edge_length(width, depth, target);
+/// Takes points that keep a distance from all that it has taken before.
+class DistanceFilter {
+ public:
+    DistanceFilter(double width, double depth, double cell)
+        : m_cell(cell),
+          m_columns(static_cast<int>(width / cell) + 3),
+          m_cells(static_cast<size_t>(m_columns) *
+                  static_cast<size_t>(static_cast<int>(depth / cell) + 3)) {}
+
+    /// @param distance  at most the cell
+    bool take(const Vec2& p, double distance) {
+        for (int i = -1; i <= 1; ++i)
+            for (int j = -1; j <= 1; ++j)
+                for (const Vec2& q : cell(p, i, j))
+                    if ((p - q).squaredNorm() < distance * distance) return false;
+        cell(p, 0, 0).push_back(p);
+        return true;
+    }
+
+ private:
+    std::vector<Vec2>& cell(const Vec2& p, int i, int j) {
+        const int column = static_cast<int>(p.x() / m_cell) + 1 + i;
+        const int row = static_cast<int>(p.y() / m_cell) + 1 + j;
+        return m_cells[static_cast<size_t>(row) * static_cast<size_t>(m_columns) +
+                       static_cast<size_t>(column)];
+    }
+
+    double m_cell;
+    int m_columns;
+    std::vector<std::vector<Vec2>> m_cells;
+};
+
+std::vector<Vec2> border_points(double width, double depth, double h) {
     const int columns = std::max(1, static_cast<int>(std::lround(width / h)));
     const int rows = std::max(1, static_cast<int>(std::lround(depth / h)));
-    PointSet set;
+    std::vector<Vec2> points;
     for (int i = 0; i <= columns; ++i)
-        for (double z : {0.0, depth}) set.points.emplace_back(width * i / columns, z);
+        for (double z : {0.0, depth}) points.emplace_back(width * i / columns, z);
     for (int j = 1; j < rows; ++j)
-        for (double x : {0.0, width}) set.points.emplace_back(x, depth * j / rows);
+        for (double x : {0.0, width}) points.emplace_back(x, depth * j / rows);
+    return points;
+}
+
+/// Random points that keep a distance, which shrinks where no more would find room.
+PointSet scatter(double width, double depth, int target, Random& uniform) {
+    const double h = edge_length(width, depth, target);
+    PointSet set{border_points(width, depth, h), 0};
     set.border = set.points.size();
-    std::mt19937_64 random(seed);
-    const auto uniform = [&random] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    while (set.points.size() < static_cast<size_t>(std::max(target, columns * 2 + rows * 2 + 1)))
-        set.points.emplace_back(width * (0.02 + 0.96 * uniform()),
-                                depth * (0.02 + 0.96 * uniform()));
+    double distance = 0.75 * h;
+    DistanceFilter filter(width, depth, distance);
+    for (const Vec2& p : set.points) filter.take(p, 0.0);
+    const size_t count = std::max(static_cast<size_t>(target), set.border + 1);
+    for (int failures = 0; set.points.size() < count;) {
+        const double x = width * uniform(), z = depth * uniform();
+        if (filter.take({x, z}, distance)) {
+            set.points.emplace_back(x, z);
+            failures = 0;
+        } else if (++failures > 200) {
+            distance *= 0.98;
+            failures = 0;
+        }
+    }
     return set;
 }
 
@@ -90,6 +148,18 @@ void smooth(PointSet& set, const Faces& faces) {
     for (size_t i = set.border; i < set.points.size(); ++i) set.points[i] = moment[i] / weight[i];
 }
 
+/// Moves the inner corners of bad triangles at random by up to a fifth of an edge.
+void shake(PointSet& set, const TriMesh& sheet, double h, Random& uniform) {
+    for (Eigen::Index f = 0; f < sheet.faces.rows(); ++f) {
+        if (smallest_angle(sheet.vertices, sheet.faces.row(f)) >= kGoodAngle) continue;
+        for (int c = 0; c < 3; ++c) {
+            const size_t i = static_cast<size_t>(sheet.faces(f, c));
+            const Vec2 move(uniform() - 0.5, uniform() - 0.5);
+            if (i >= set.border) set.points[i] += 0.4 * h * move;
+        }
+    }
+}
+
 Points lift(const std::vector<Vec2>& points, double width, double depth) {
     Points lifted(static_cast<Eigen::Index>(points.size()), 3);
     for (size_t i = 0; i < points.size(); ++i)
@@ -115,12 +185,20 @@ void check_arguments(double width, double depth, int target_vertices) {
 
 TriMesh make_sheet(double width, double depth, int target_vertices, unsigned seed) {
     check_arguments(width, depth, target_vertices);
-    PointSet set = scatter(width, depth, target_vertices, seed);
+    const double h = edge_length(width, depth, target_vertices);
+    Random uniform(seed);
+    PointSet set = scatter(width, depth, target_vertices, uniform);
     TriMesh sheet{lift(set.points, width, depth), triangulate(set.points)};
     for (int round = 0; round < kMaxRounds && smallest_angle(sheet) < kGoodAngle; ++round) {
+        if (round % kShakeEvery == kShakeEvery - 1) shake(set, sheet, h, uniform);
         smooth(set, sheet.faces);
         sheet = {lift(set.points, width, depth), triangulate(set.points)};
     }
+    const double excess = static_cast<double>(sheet.vertices.rows()) / target_vertices - 1.0;
+    if (smallest_angle(sheet) < 20.0 || std::abs(excess) > 0.03)
+        throw ArgumentError("make_sheet: target_vertices",
+                            std::to_string(target_vertices) + " vertices are too few for the shape",
+                            "ask for more vertices");
     return sheet;
 }
 

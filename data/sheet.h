@@ -16,9 +16,10 @@ namespace cloth {
 ///
 /// @param width            size along x (m)
 /// @param depth            size along z (m), at most 20 times as long or short as the width
-/// @param target_vertices  vertices of the sheet, 9 to 200,000; met within 3 % (exactly, above 50)
+/// @param target_vertices  vertices of the sheet, 9 to 200,000; met within 3 %, mostly exactly
 /// @param seed             another seed gives another triangulation
-/// @throws ArgumentError if an argument is out of range
+/// @throws ArgumentError if an argument is out of range, or so few vertices cannot fill the shape
+/// well
 TriMesh make_sheet(double width, double depth, int target_vertices, unsigned seed = 1);
 
 /// Side of a sheet, seen with +x to the right and +z towards the viewer.

@@ -14,14 +14,14 @@
 
 namespace cloth {
 
-namespace {
-
 std::string extension_of(const std::string& path) {
     std::string extension = path.substr(std::min(path.size(), path.rfind('.') + 1));
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
 }
+
+namespace {
 
 std::string read_text(const std::string& path) {
     std::ifstream file(path, std::ios::binary);

@@ -8,6 +8,9 @@
 
 namespace cloth {
 
+/// The ending of a file's name in lower case, without the dot.
+std::string extension_of(const std::string& path);
+
 /// Where a position stands in a file, and its value there at full precision.
 struct FilePosition {
     int index = 0;

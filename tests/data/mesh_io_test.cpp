@@ -214,10 +214,24 @@ TEST_F(MeshIo, TruncatedFilesAreRefused) {
     expect_error(write("cut.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2"), "damaged");
     expect_error(write("cut.ply", ply("0 0 0\n1 0 0\n0 1 0\n", "", 3, 1)), "");
     expect_error(write("cut2.ply", ply("0 0 0\n1 0 0\n", "", 3, 1)), "");
+    expect_error(write("cut3.ply", ply("0 0 0\n1 0 0\n1 1 0\n0 1 0\n", "3 0 1 2\n", 4, 2)),
+                 "face 1: the file ends too early");
+    expect_error(write("cut4.ply", ply("0 0 0\n1 0 0\n1 1 0\n", "3 0 1", 3, 1)),
+                 "face 0: the file ends too early");
+    expect_error(write("cut5.ply", "ply\nformat ascii 1.0\nelement vertex 3\n"), "end_header");
     if (!std::filesystem::exists(kHuman)) return;
     expect_error(write("cut.zae", read(kHuman).substr(0, 500000)), "");
     const std::string duck = read(kModels + "Collada/duck.dae");
     expect_error(write("cut.dae", duck.substr(0, duck.size() / 2)), "");
+}
+
+TEST_F(MeshIo, TruncatedBinaryPlyIsRefusedWholeIsRead) {
+    const std::string cube = kModels + "PLY/cube_binary.ply";
+    if (!std::filesystem::exists(cube)) GTEST_SKIP() << cube << ": install assimp-testmodels";
+    EXPECT_EQ(load_mesh(cube).vertices.rows(), 8);
+    EXPECT_EQ(load_mesh(cube).faces.rows(), 12);
+    const std::string whole = read(cube);
+    expect_error(write("cut.ply", whole.substr(0, whole.size() - 1)), "face 11: the file ends");
 }
 
 TEST_F(MeshIo, WritingIntoAMissingFolderFails) {
