@@ -15,7 +15,7 @@ namespace cloth {
 /// The clock starts with the motion; before it lies the lead-in, in which the body moves from its
 /// rest pose into the motion's first pose and the garment settles.
 class ComparisonScene {
-   public:
+ public:
     static constexpr double frame_time = 1.0 / 30.0;  ///< (s)
 
     /// @throws LoadError, ArgumentError, UsageError if the garment or the motion cannot be had
@@ -33,7 +33,7 @@ class ComparisonScene {
     /// Skin of the body at a time of the motion's clock (|V| x 3, m).
     Points skin(double time) const;
 
-   private:
+ private:
     std::unique_ptr<Garment> m_garment;
     std::unique_ptr<AnimatedBody> m_body;
     int m_frames = 0;

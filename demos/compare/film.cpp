@@ -15,7 +15,7 @@ constexpr int panel_width = 400;
 constexpr int panel_height = 560;
 constexpr int key_frame_count = 6;
 
-const Rgb garment_colours[] = {{196, 84, 72},  {86, 132, 196}, {92, 160, 96}, {214, 150, 62},
+const Rgb garment_colours[] = {{196, 84, 72},   {86, 132, 196}, {92, 160, 96},   {214, 150, 62},
                                {140, 102, 176}, {72, 164, 164}, {196, 112, 152}, {120, 120, 128}};
 
 std::string format(const char* pattern, double value) {
@@ -45,7 +45,7 @@ std::string caption(const FilmPanel& panel, size_t frame) {
 }
 
 class FilmStudio {
-   public:
+ public:
     FilmStudio(const ComparisonScene& scene)
         : m_scene(scene),
           m_renderer(settings()),
@@ -53,8 +53,8 @@ class FilmStudio {
           m_cloth_faces(std::make_shared<Faces>(scene.garment().rest().faces)) {}
 
     Image draw(const std::vector<FilmPanel>& panels, size_t frame) {
-        const Points skin = m_scene.skin(static_cast<double>(frame + 1) *
-                                         ComparisonScene::frame_time);
+        const Points skin =
+            m_scene.skin(static_cast<double>(frame + 1) * ComparisonScene::frame_time);
         const Camera camera = m_tracker.follow(skin);
         std::vector<Image> pictures;
         for (size_t k = 0; k < panels.size(); ++k)
@@ -62,7 +62,7 @@ class FilmStudio {
         return montage(pictures);
     }
 
-   private:
+ private:
     static OsmesaSettings settings() {
         OsmesaSettings settings;
         settings.width = panel_width;
@@ -119,8 +119,8 @@ std::vector<std::string> make_film(const ComparisonScene& scene,
             video = std::make_unique<VideoWriter>(out + "/comparison.mp4", image.width(),
                                                   image.height());
         video->add(image);
-        const int next_key = static_cast<int>(key_frames.size()) * (frames - 1) /
-                             std::max(1, key_frame_count - 1);
+        const int next_key =
+            static_cast<int>(key_frames.size()) * (frames - 1) / std::max(1, key_frame_count - 1);
         if (frame == next_key) {
             key_frames.push_back(out + "/key_frame_" + std::to_string(frame) + ".png");
             write_png(key_frames.back(), image);

@@ -143,10 +143,9 @@ void compare(const CompareOptions& options) {
         for (size_t k = 0; k < options.solvers.size(); ++k)
             panels.push_back({options.solvers[k], &report["solvers"][k], &trajectories[k]});
         Progress line;
-        key_frames = make_film(scene, panels, options.out,
-                               [&line](int done, int all, const std::string& what) {
-                                   line.update(done, all, what);
-                               });
+        key_frames = make_film(
+            scene, panels, options.out,
+            [&line](int done, int all, const std::string& what) { line.update(done, all, what); });
     }
     ReportPictures pictures;
     pictures.key_frames = key_frames;

@@ -17,7 +17,9 @@ using nlohmann::json;
 constexpr int gap_stride = 10;  // frames between two minimisations from a rollout's own states
 
 /// JSON knows no NaN or infinity: they become null.
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+json number(double value) {
+    return std::isfinite(value) ? json(value) : json(nullptr);
+}
 
 json numbers(const std::vector<double>& values) {
     json list = json::array();
@@ -85,7 +87,8 @@ json one_step(const ComparisonScene& scene, const References& references, const 
 /// What a rollout from the settled state collects frame by frame.
 struct Rollout {
     std::vector<double> ms, proximity, features, solve, contact;
-    std::vector<double> error, fine_error, penetration, inside, jitter;
+    std::vector<double> error, fine_error, penetration, inside;
+    JitterMeter jitter;
     std::vector<double> stretch_p50, stretch_p99, stretch_max;
     std::vector<double> gap, progress, residual;
     std::vector<int> gap_frames;
@@ -118,10 +121,8 @@ void record_errors(const References& references, size_t frame, const Points& x, 
     rollout.fine_error.push_back(error_to(references.fine));
 }
 
-void record_shape(const ComparisonScene& scene, const Boundary& boundary,
-                  const Trajectory& trajectory, Proximity& proximity, int frame,
-                  Rollout& rollout) {
-    const Points& x = trajectory.back().x;
+void record_shape(const ComparisonScene& scene, const Boundary& boundary, const Points& x,
+                  Proximity& proximity, int frame, Rollout& rollout) {
     const PenetrationStatistics penetration =
         measure_penetration(proximity, boundary, scene.garment(), x);
     rollout.penetration.push_back(1e3 * penetration.max_depth);
@@ -130,18 +131,14 @@ void record_shape(const ComparisonScene& scene, const Boundary& boundary,
     rollout.stretch_p50.push_back(stretch.p50);
     rollout.stretch_p99.push_back(stretch.p99);
     rollout.stretch_max.push_back(stretch.max);
-    if (trajectory.size() >= 3) {
-        const Points& before = trajectory[trajectory.size() - 2].x;
-        const Points& first = trajectory[trajectory.size() - 3].x;
-        rollout.jitter.push_back(rmse_mm(x - before, before - first));
-    }
+    rollout.jitter.add(x);
     if (stretch.p99 > 2.0) fail(rollout, frame, "torn: 1 % of the edges are stretched beyond 2");
     if (penetration.fraction_inside > 0.2) fail(rollout, frame, "a fifth of the garment is inside");
     const double height = x.col(1).mean() - scene.garment().rest().vertices.col(1).mean();
-    const double body_height = boundary.obstacles.empty()
-                                   ? height
-                                   : boundary.obstacles[0].x1.col(1).mean() -
-                                         scene.body().body().rest().col(1).mean();
+    const double body_height =
+        boundary.obstacles.empty()
+            ? height
+            : boundary.obstacles[0].x1.col(1).mean() - scene.body().body().rest().col(1).mean();
     if (std::abs(height - body_height) > 0.4) fail(rollout, frame, "slid off the body");
 }
 
@@ -184,7 +181,7 @@ Rollout roll_out(const ComparisonScene& scene, const ClothState& start, int fram
         }
         const size_t index = static_cast<size_t>(frame);
         record_errors(references, index, state.x, rollout);
-        record_shape(scene, boundary, trajectory, proximity, frame, rollout);
+        record_shape(scene, boundary, state.x, proximity, frame, rollout);
         if (frame % gap_stride == gap_stride / 2 && frame < scene.reference_frames())
             record_gap(energies, trajectory[index], boundary, state.x, frame, rollout);
         done(frame + 1);
@@ -192,7 +189,9 @@ Rollout roll_out(const ComparisonScene& scene, const ClothState& start, int fram
     return rollout;
 }
 
-double highest(const std::vector<double>& values) { return quantile(values, 1.0); }
+double highest(const std::vector<double>& values) {
+    return quantile(values, 1.0);
+}
 
 /// Mean over the frames that have a reference.
 double mean_error(const std::vector<double>& errors) {
@@ -203,22 +202,22 @@ double mean_error(const std::vector<double>& errors) {
 }
 
 json to_json(const Rollout& rollout) {
-    return {{"frames", rollout.ms.size()},
-            {"gap",
-             {{"median", number(median(rollout.gap))},
-              {"p95", number(quantile(rollout.gap, 0.95))}}},
-            {"progress", {{"median", number(median(rollout.progress))}}},
-            {"rmse_mm", number(mean_error(rollout.error))},
-            {"fine_rmse_mm", number(mean_error(rollout.fine_error))},
-            {"residual", {{"median", number(median(rollout.residual))}}},
-            {"penetration",
-             {{"max_mm", number(highest(rollout.penetration))},
-              {"fraction", number(mean(rollout.inside))}}},
-            {"stretch",
-             {{"p50", number(median(rollout.stretch_p50))},
-              {"p99", number(median(rollout.stretch_p99))},
-              {"max", number(highest(rollout.stretch_max))}}},
-            {"jitter_mm", number(mean(rollout.jitter))}};
+    return {
+        {"frames", rollout.ms.size()},
+        {"gap",
+         {{"median", number(median(rollout.gap))}, {"p95", number(quantile(rollout.gap, 0.95))}}},
+        {"progress", {{"median", number(median(rollout.progress))}}},
+        {"rmse_mm", number(mean_error(rollout.error))},
+        {"fine_rmse_mm", number(mean_error(rollout.fine_error))},
+        {"residual", {{"median", number(median(rollout.residual))}}},
+        {"penetration",
+         {{"max_mm", number(highest(rollout.penetration))},
+          {"fraction", number(mean(rollout.inside))}}},
+        {"stretch",
+         {{"p50", number(median(rollout.stretch_p50))},
+          {"p99", number(median(rollout.stretch_p99))},
+          {"max", number(highest(rollout.stretch_max))}}},
+        {"jitter_mm", number(1e3 * rollout.jitter.mean())}};
 }
 
 json series(const Rollout& rollout) {
@@ -245,8 +244,7 @@ json solver_json(const std::string& name, const Stepper& stepper, double memory,
     return {{"name", name},
             {"stepper", stepper.name()},
             {"ms_per_frame",
-             {{"median", number(median(rollout.ms))},
-              {"p95", number(quantile(rollout.ms, 0.95))}}},
+             {{"median", number(median(rollout.ms))}, {"p95", number(quantile(rollout.ms, 0.95))}}},
             {"stages_ms",
              {{"proximity", number(median(rollout.proximity))},
               {"features", number(median(rollout.features))},
@@ -273,9 +271,9 @@ Measurement measure(const std::string& name, const ComparisonScene& scene, const
     warm_up(scene, start, *stepper);
     const double memory = peak_memory_mb() - memory_before;
     Measurement result;
-    const Rollout rollout = roll_out(
-        scene, start, scene.frames(), references, *stepper, result.trajectory,
-        [&](int done) { progress(done, scene.frames(), name + ", rollout"); });
+    const Rollout rollout =
+        roll_out(scene, start, scene.frames(), references, *stepper, result.trajectory,
+                 [&](int done) { progress(done, scene.frames(), name + ", rollout"); });
     const auto step = [&](size_t frame, const Boundary& boundary) {
         ClothState state = references.coarse[frame];
         stepper->step(boundary, ComparisonScene::frame_time, state);
@@ -297,9 +295,9 @@ Measurement measure_reference(const ComparisonScene& scene, const ClothState& st
     const std::unique_ptr<Stepper> stepper = make();
     Measurement result;
     References references{{}, fine};
-    Rollout rollout = roll_out(
-        scene, start, scene.reference_frames(), references, *stepper, result.trajectory,
-        [&](int done) { progress(done, scene.reference_frames(), "reference, 1/30 s"); });
+    Rollout rollout =
+        roll_out(scene, start, scene.reference_frames(), references, *stepper, result.trajectory,
+                 [&](int done) { progress(done, scene.reference_frames(), "reference, 1/30 s"); });
     const double memory = peak_memory_mb() - memory_before;
     references.coarse = result.trajectory;
     rollout.error.assign(rollout.error.size(), 0.0);

@@ -14,10 +14,16 @@ static double status_mb(const std::string& field) {
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-double resident_memory_mb() { return status_mb("VmRSS"); }
+double resident_memory_mb() {
+    return status_mb("VmRSS");
+}
 
-double peak_memory_mb() { return status_mb("VmHWM"); }
+double peak_memory_mb() {
+    return status_mb("VmHWM");
+}
 
-void reset_peak_memory() { std::ofstream("/proc/self/clear_refs") << "5"; }
+void reset_peak_memory() {
+    std::ofstream("/proc/self/clear_refs") << "5";
+}
 
 }  // namespace cloth

@@ -45,18 +45,21 @@ std::string compare_usage() {
            "                         quasi-newton-K, and networks: baseline, sampling, reduction,\n"
            "                         fast, each with +K for K refinement iterations (default +2)\n"
            "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"
-           "  --reference-frames N   frames with references and one-step errors (default 30; 0: all)\n"
-           "  --weights DIR          folder with NAME.safetensors (default: the committed weights)\n"
+           "  --reference-frames N   frames with references and one-step errors (default 30; 0: "
+           "all)\n"
+           "  --weights DIR          folder with NAME.safetensors (default: the committed "
+           "weights)\n"
            "  --threads N            0: all cores\n"
            "  --no-video             tables and plots only\n"
            "  --out DIR              where comparison.mp4, report.json and report.html go\n"
-           "A run that was interrupted goes on where it stopped; delete DIR/work to start afresh.\n";
+           "A run that was interrupted goes on where it stopped; delete DIR/work to start "
+           "afresh.\n";
 }
 
 CompareOptions parse_compare_options(const std::vector<std::string>& arguments) {
     CompareOptions options;
-    options.solvers = {"bullet", "bullet-fine", "reference", "quasi-newton-3",
-                       "baseline", "fast", "fast+0"};
+    options.solvers = {"bullet",   "bullet-fine", "reference", "quasi-newton-3",
+                       "baseline", "fast",        "fast+0"};
     std::map<std::string, std::string*> texts = {
         {"--garment", &options.garment}, {"--motion", &options.motion},
         {"--fabric", &options.fabric},   {"--weights", &options.weights},
@@ -91,16 +94,25 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
 
 std::vector<std::string> worker_arguments(const CompareOptions& options,
                                           const std::string& worker) {
-    std::vector<std::string> arguments = {
-        "--garment",  options.garment,  "--motion",  options.motion,
-        "--fabric",   options.fabric,   "--out",     options.out,
-        "--solvers",  join(options.solvers),
-        "--frames",   std::to_string(options.frames),
-        "--reference-frames", std::to_string(options.reference_frames),
-        "--threads",  std::to_string(options.threads),
-        "--worker",   worker};
-    if (!options.weights.empty())
-        arguments.insert(arguments.end(), {"--weights", options.weights});
+    std::vector<std::string> arguments = {"--garment",
+                                          options.garment,
+                                          "--motion",
+                                          options.motion,
+                                          "--fabric",
+                                          options.fabric,
+                                          "--out",
+                                          options.out,
+                                          "--solvers",
+                                          join(options.solvers),
+                                          "--frames",
+                                          std::to_string(options.frames),
+                                          "--reference-frames",
+                                          std::to_string(options.reference_frames),
+                                          "--threads",
+                                          std::to_string(options.threads),
+                                          "--worker",
+                                          worker};
+    if (!options.weights.empty()) arguments.insert(arguments.end(), {"--weights", options.weights});
     return arguments;
 }
 

@@ -8,7 +8,7 @@ namespace cloth {
 
 /// The command line is wrong, or asks for help: the message is what the user shall read.
 class UsageError : public std::runtime_error {
-   public:
+ public:
     using std::runtime_error::runtime_error;
 };
 

@@ -10,7 +10,8 @@ static double seconds(std::chrono::steady_clock::duration duration) {
     return std::chrono::duration<double>(duration).count();
 }
 
-Progress::Progress() : m_terminal(isatty(STDOUT_FILENO) != 0) {}
+Progress::Progress() : m_terminal(isatty(STDOUT_FILENO) != 0) {
+}
 
 void Progress::update(int done, int all, const std::string& what) {
     const Clock::time_point now = Clock::now();

@@ -8,12 +8,12 @@ namespace cloth {
 /// A line that tells how far a long computation is and how long it will take: rewritten in place on
 /// a terminal, a plain line every few seconds otherwise.
 class Progress {
-   public:
+ public:
     Progress();
 
     void update(int done, int all, const std::string& what);
 
-   private:
+ private:
     using Clock = std::chrono::steady_clock;
     bool m_terminal;
     std::string m_what;

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "bullet_ext/bodySegments.h"
 #include "bullet_ext/bulletClothStepper.h"
 #include "data/paths.h"
 #include "gnn/model/engine.h"
@@ -22,12 +23,13 @@ std::optional<int> number_after(const std::string& name, const std::string& pref
 }
 
 std::unique_ptr<Stepper> make_bullet(const std::string& name, const ComparisonScene& scene) {
-    BulletClothSettings settings =
-        name == "bullet-fine" ? BulletClothSettings::fine() : BulletClothSettings::shipped();
-    if (const auto iterations = number_after(name, "bullet-")) settings.iterations = *iterations;
+    BulletClothSettings settings = BulletClothSettings::shipped();
+    if (const auto iterations = number_after(name, "bullet-"))
+        settings = BulletClothSettings::shipped(*iterations);
+    if (name == "bullet-fine") settings = BulletClothSettings::fine();
     const Body& body = scene.body().body();
     return std::make_unique<BulletClothStepper>(
-        scene.garment(), segment_body(body.rest_mesh(), body.dominant_joint()), settings);
+        scene.garment(), settings, segment_body(body.rest_mesh(), body.dominant_joint()));
 }
 
 std::unique_ptr<Stepper> make_network(const std::string& name, const ComparisonScene& scene,
@@ -54,8 +56,8 @@ std::unique_ptr<Stepper> make_network(const std::string& name, const ComparisonS
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const CompareOptions& options) {
     if (name.rfind("bullet", 0) == 0) {
-        const bool known = name == "bullet" || name == "bullet-fine" ||
-                           number_after(name, "bullet-").has_value();
+        const bool known =
+            name == "bullet" || name == "bullet-fine" || number_after(name, "bullet-").has_value();
         if (!known) throw UsageError("solver " + name + ": choose bullet, bullet-fine or bullet-K");
         return make_bullet(name, scene);
     }

@@ -21,7 +21,9 @@ double quantile(std::vector<double> values, double part) {
     return weight == 0.0 ? values[low] : (1.0 - weight) * values[low] + weight * values[high];
 }
 
-double median(const std::vector<double>& values) { return quantile(values, 0.5); }
+double median(const std::vector<double>& values) {
+    return quantile(values, 0.5);
+}
 
 double mean(const std::vector<double>& values) {
     if (values.empty()) return std::numeric_limits<double>::quiet_NaN();

@@ -7,7 +7,7 @@ namespace cloth {
 
 /// The incremental potential of one step, with the energies that a solver's result is held against.
 class StepEnergies {
-   public:
+ public:
     explicit StepEnergies(const Garment& garment) : m_potential(garment) {}
 
     /// Sets up the step from `state` across `boundary`.
@@ -25,7 +25,7 @@ class StepEnergies {
     /// (E(x) - minimum) / (E(x_t) - minimum)
     double progress(double energy, double minimum) const;
 
-   private:
+ private:
     Proximity m_proximity;
     SurfaceContacts m_contacts;
     IncrementalPotential m_potential;
