@@ -1,0 +1,105 @@
+#include "gnn/physics/implicit_stepper.h"
+
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "collision/resolve.h"
+#include "data/errors.h"
+#include "gnn/physics/guess.h"
+
+namespace cloth {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+StepReport failed() {
+    StepReport report;
+    report.finite = false;
+    return report;
+}
+
+}  // namespace
+
+ImplicitStepper::ImplicitStepper(const Garment& garment, const ImplicitSettings& settings)
+    : m_garment(&garment),
+      m_settings(settings),
+      m_potential(garment, settings.potential),
+      m_newton(garment, settings),
+      m_proximity(settings.proximity) {
+    if (settings.contact_updates < 0 || settings.contact_updates > 10)
+        throw ArgumentError("ImplicitSettings.contact_updates",
+                            std::to_string(settings.contact_updates) + " is out of range",
+                            "choose 0 to 10");
+}
+
+StepReport ImplicitStepper::step(const Boundary& boundary, double dt, ClothState& state) {
+    if (!is_valid_step(*m_garment, state, boundary, dt)) return failed();
+    StepReport report;
+    if (!minimise(boundary, state, dt, report)) return failed();
+    finish(boundary, report);
+    m_v = (m_x - state.x) / dt;
+    if (!m_x.allFinite() || !m_v.allFinite()) return failed();
+    state.x = m_x;
+    state.v = m_v;
+    state.time += dt;
+    return report;
+}
+
+bool ImplicitStepper::minimise(const Boundary& boundary, const ClothState& state, double dt,
+                               StepReport& report) {
+    for (int round = 0; round <= m_settings.contact_updates; ++round) {
+        const Clock::time_point start = Clock::now();
+        if (round == 0)
+            find_contacts(boundary, state.x, StepEnd::start);
+        else
+            find_contacts(boundary, m_x, StepEnd::end);
+        report.times.proximity += milliseconds_since(start);
+
+        const Clock::time_point solve = Clock::now();
+        m_potential.begin_step(state, boundary, m_contacts, dt);
+        if (round == 0) choose_start(boundary, state, dt);
+        const MinimiseReport minimum = m_newton.minimise(m_potential, m_x);
+        report.times.solve += milliseconds_since(solve);
+        if (!minimum.finite) return false;
+        report.iterations += minimum.iterations;
+        report.residual = minimum.residual;
+        report.converged = minimum.converged;
+        if (boundary.obstacles.empty()) break;
+    }
+    return true;
+}
+
+void ImplicitStepper::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {
+    if (boundary.obstacles.empty())
+        m_contacts.obstacle.clear();
+    else
+        m_proximity.query(x, boundary, m_contacts, end);
+}
+
+void ImplicitStepper::choose_start(const Boundary& boundary, const ClothState& state, double dt) {
+    starting_guess(*m_garment, state, boundary, m_contacts, dt,
+                   m_potential.settings().contact_distance, m_x);
+    if (std::isfinite(m_potential.value(m_x))) return;
+    m_x = state.x;
+    place_pins(*m_garment, boundary, m_x);
+}
+
+void ImplicitStepper::finish(const Boundary& boundary, StepReport& report) {
+    if (boundary.obstacles.empty()) return;
+    const Clock::time_point start = Clock::now();
+    if (m_settings.safety_distance >= 0.0) {
+        resolve_penetration(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts);
+        place_pins(*m_garment, boundary, m_x);
+    }
+    m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
+    report.max_penetration = std::max(0.0, -m_distance.minCoeff());
+    report.times.contact = milliseconds_since(start);
+}
+
+}  // namespace cloth

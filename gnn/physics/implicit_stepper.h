@@ -1,0 +1,56 @@
+#pragma once
+
+#include "collision/proximity.h"
+#include "gnn/physics/newton.h"
+#include "gnn/stepper.h"
+
+namespace cloth {
+
+struct ImplicitSettings : NewtonSettings {
+    PotentialSettings potential;
+    ProximitySettings proximity;
+    /// How often the nearest surface points are found anew for the minimum and the minimisation
+    /// goes on with them, 0 to 10. 0 minimises the energy as every other stepper does, with the
+    /// points that were nearest at t; more follow cloth that slides past the end of a face.
+    int contact_updates = 0;
+    /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
+    /// contact, are moved to this distance; negative: left where the minimum put them.
+    double safety_distance = 5e-4;
+};
+
+/// The reference: one backward-Euler step minimised by Newton's method from the projected linear
+/// extrapolation, or from x_t where the extrapolation's energy is not finite. (Starting from the
+/// lower of both needs as many iterations, and where the iterations end before the minimum, cloth
+/// that starts from x_t hangs back.)
+///
+///     ImplicitStepper reference(garment);
+///     StepReport report = reference.step(boundary, 1.0 / 30.0, state);
+///     if (!report.converged) { ... report.residual tells how far it got ... }
+///
+/// Accepts any time step. Slack cloth in contact may not reach the tolerance within the iterations.
+class ImplicitStepper : public Stepper {
+ public:
+    /// Keeps a reference to `garment`.
+    /// @throws ArgumentError if a setting is out of range
+    explicit ImplicitStepper(const Garment& garment, const ImplicitSettings& settings = {});
+
+    std::string name() const override { return "reference"; }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+
+ private:
+    void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
+    void choose_start(const Boundary& boundary, const ClothState& state, double dt);
+    bool minimise(const Boundary& boundary, const ClothState& state, double dt, StepReport& report);
+    void finish(const Boundary& boundary, StepReport& report);
+
+    const Garment* m_garment;
+    ImplicitSettings m_settings;
+    IncrementalPotential m_potential;
+    Newton m_newton;
+    Proximity m_proximity;
+    SurfaceContacts m_contacts;
+    VectorX m_distance;
+    Points m_x, m_v;  ///< |V| x 3
+};
+
+}  // namespace cloth
