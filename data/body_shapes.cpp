@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <random>
 #include <sstream>
 
@@ -55,6 +56,16 @@ Points load_base_vertices(const std::string& path) {
     return points;
 }
 
+/// False unless all words are finite numbers (".5" is one).
+bool parse_numbers(const std::vector<std::string>& words, std::array<double, 4>& numbers) {
+    for (size_t i = 0; i < numbers.size(); ++i) {
+        char* end = nullptr;
+        numbers[i] = std::strtod(words[i].c_str(), &end);
+        if (*end != '\0' || end == words[i].c_str() || !std::isfinite(numbers[i])) return false;
+    }
+    return true;
+}
+
 /// Uniform numbers from the raw bits of the generator: the distributions of the standard library
 /// differ between implementations.
 class Uniform {
@@ -94,21 +105,19 @@ ShapeTarget load_shape_target(const std::string& path, int vertex_count) {
     std::string line;
     for (int number = 1; std::getline(file, line); ++number) {
         line.resize(std::min(line.find('#'), line.size()));
-        std::istringstream words(line);
-        std::string index, x, y, z, more;
-        if (!(words >> index)) continue;
-        const bool complete = static_cast<bool>(words >> x >> y >> z) && !(words >> more);
-        char* end = nullptr;
-        const long vertex = std::strtol(index.c_str(), &end, 10);
-        const Vec3 offset(std::atof(x.c_str()), std::atof(y.c_str()), std::atof(z.c_str()));
-        if (!complete || *end != '\0' || vertex < 0 || vertex >= vertex_count ||
-            !offset.allFinite())
+        std::istringstream split(line);
+        const std::vector<std::string> words(std::istream_iterator<std::string>(split), {});
+        if (words.empty()) continue;
+        std::array<double, 4> row{};
+        const bool complete = words.size() == 4 && parse_numbers(words, row);
+        const double vertex = row[0];
+        if (!complete || vertex != std::floor(vertex) || vertex < 0 || vertex >= vertex_count)
             throw LoadError(
                 path, "line " + std::to_string(number),
                 "is not 'index dx dy dz' with an index below " + std::to_string(vertex_count),
                 "copy the file again; targets belong to one base mesh");
         target.vertices.push_back(static_cast<int>(vertex));
-        offsets.push_back(offset);
+        offsets.emplace_back(row[1], row[2], row[3]);
     }
     target.offsets.resize(static_cast<Eigen::Index>(offsets.size()), 3);
     for (size_t i = 0; i < offsets.size(); ++i)

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "data/errors.h"
+#include "data/segment_grid.h"
 
 namespace cloth {
 
@@ -65,33 +66,59 @@ struct HeatSources {
     Eigen::MatrixXd shares;  ///< |V| x |joints|: p
 };
 
-/// Distances to the bones that a vertex sees, infinite to the others; returns the smallest. Where
-/// it sees none (inside the mouth) it is given all.
-double measure_bones(const std::vector<BoneSegment>& bones, const Vec3& x, const Vec3& normal,
-                     std::vector<double>& distances) {
-    constexpr double unseen = std::numeric_limits<double>::infinity();
-    double nearest = unseen;
-    for (bool ask_visibility : {true, false}) {
-        for (size_t b = 0; b < bones.size(); ++b) {
-            const Vec3 way = closest_on_segment(bones[b], x) - x;
-            const bool visible = !ask_visibility || way.dot(normal) < 0.0;
-            distances[b] = visible ? way.norm() : unseen;
-            nearest = std::min(nearest, distances[b]);
+/// Tells which bones a vertex of the skin sees.
+class BoneView {
+ public:
+    explicit BoneView(const TriMesh& skin)
+        : m_skin(skin),
+          m_normals(vertex_normals(skin.vertices, skin.faces)),
+          m_grid(skin.vertices, skin.faces, grid_cell) {}
+
+    /// Distances to the bones that vertex i sees, infinite to the others; returns the smallest.
+    /// Where it sees none (inside the mouth) it is given all.
+    double measure(Eigen::Index i, const std::vector<BoneSegment>& bones,
+                   std::vector<double>& distances) const {
+        for (bool ask_visibility : {true, false}) {
+            double nearest = unseen;
+            for (size_t b = 0; b < bones.size(); ++b) {
+                const Vec3 x = m_skin.vertices.row(i);
+                const Vec3 target = closest_on_segment(bones[b], x);
+                const double distance = (target - x).norm();
+                // Only bones that may be nearest matter; they spare most of the rays.
+                const bool counts =
+                    distance <= nearest * same_distance && (!ask_visibility || sees(i, x, target));
+                distances[b] = counts ? distance : unseen;
+                nearest = std::min(nearest, distances[b]);
+            }
+            if (nearest < unseen) return nearest;
         }
-        if (nearest < unseen) break;
+        return unseen;
     }
-    return nearest;
-}
+
+ private:
+    static constexpr double unseen = std::numeric_limits<double>::infinity();
+    static constexpr double grid_cell = 0.02;  // m
+
+    /// The way starts inwards and does not leave the body. Both ends are left out: the vertex's own
+    /// faces, and the skin that the tips of bones reach into.
+    bool sees(Eigen::Index i, const Vec3& x, const Vec3& target) const {
+        const Vec3 way = target - x;
+        return way.dot(m_normals.row(i)) < 0.0 && !m_grid.hits(x + 0.01 * way, x + 0.9 * way);
+    }
+
+    const TriMesh& m_skin;
+    Points m_normals;
+    SegmentGrid m_grid;
+};
 
 HeatSources find_sources(const TriMesh& skin, const std::vector<BoneSegment>& bones,
                          int joint_count, double heat) {
     const Eigen::Index n = skin.vertices.rows();
-    const Points normals = vertex_normals(skin.vertices, skin.faces);
+    const BoneView view(skin);
     HeatSources sources{VectorX::Zero(n), Eigen::MatrixXd::Zero(n, joint_count)};
     std::vector<double> distances(bones.size());
     for (Eigen::Index i = 0; i < n; ++i) {
-        const Vec3 x = skin.vertices.row(i), normal = normals.row(i);
-        const double nearest = measure_bones(bones, x, normal, distances);
+        const double nearest = view.measure(i, bones, distances);
         int sharing = 0;
         for (double distance : distances) sharing += distance <= nearest * same_distance;
         for (size_t b = 0; b < bones.size(); ++b)

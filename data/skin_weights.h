@@ -43,8 +43,8 @@ struct HeatWeightSettings {
 ///
 /// with the cotangent Laplacian L, vertex areas M, H = heat / d^2 for the distance d to the nearest
 /// bone that the vertex sees, and p_j = 1 where that bone moves with joint j. A vertex sees a bone
-/// if the way to it starts inwards: this keeps the flank from following the arm beside it, and
-/// needs no ray through the body.
+/// if the way to it starts inwards and does not leave the body: so the flank does not follow the
+/// arm beside it.
 /// @param bones  inside the body; at least one
 /// @throws ArgumentError if there are no faces or no bones, or the system cannot be solved
 SkinWeights heat_weights(const TriMesh& skin, const std::vector<BoneSegment>& bones,

@@ -1,14 +1,6 @@
 #include "data/skinned_character.h"
 
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <array>
-#include <assimp/Importer.hpp>
-#include <cmath>
-#include <filesystem>
-#include <map>
 #include <utility>
 
 #include "data/errors.h"
@@ -16,24 +8,6 @@
 namespace cloth {
 
 namespace {
-
-constexpr int max_influences = 8;
-
-Eigen::Affine3d to_eigen(const aiMatrix4x4& m) {
-    Eigen::Affine3d result = Eigen::Affine3d::Identity();
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column)
-            result.matrix()(row, column) = m[static_cast<unsigned>(row)][column];
-    return result;
-}
-
-Vec3 to_eigen(const aiVector3D& v) {
-    return {v.x, v.y, v.z};
-}
-
-Eigen::Quaterniond to_eigen(const aiQuaternion& q) {
-    return Eigen::Quaterniond(q.w, q.x, q.y, q.z).normalized();
-}
 
 /// The keys around `time`: index of the first and the way to the next (0 to 1).
 std::pair<size_t, double> find_key(const std::vector<double>& times, double time) {
@@ -57,238 +31,18 @@ Eigen::Quaterniond sample(const std::vector<double>& times,
 
 }  // namespace
 
-/// Fills a SkinnedCharacter from assimp's scene.
-class CharacterReader {
- public:
-    CharacterReader(std::string path, SkinnedCharacter& character)
-        : m_path(std::move(path)), m_character(character) {}
-
-    void read(const CharacterSettings& settings) {
-        Assimp::Importer importer;
-        const aiScene& scene = open(importer);
-        add_nodes(*scene.mRootNode, -1);
-        add_animation(find_animation(scene, settings.animation));
-        add_meshes(*scene.mRootNode, scene, settings.mesh_name);
-        if (m_faces.empty())
-            fail("mesh " + settings.mesh_name, "there is no such mesh with triangles",
-                 "give the name of a mesh in the file, or none for all");
-        finish();
-    }
-
- private:
-    [[noreturn]] void fail(const std::string& place, const std::string& problem,
-                           const std::string& remedy) const {
-        throw LoadError(m_path, place, problem, remedy);
-    }
-
-    const aiScene& open(Assimp::Importer& importer) const {
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(m_path, error))
-            fail("", "there is no such file", "check the path");
-        const aiScene* scene = importer.ReadFile(m_path, aiProcess_Triangulate);
-        if (!scene || !scene->mRootNode)
-            fail("", std::string("cannot be read: ") + importer.GetErrorString(),
-                 "export it again; it may be damaged");
-        return *scene;
-    }
-
-    void add_nodes(const aiNode& node, int parent) {
-        const int index = static_cast<int>(m_character.m_nodes.size());
-        m_nodes.try_emplace(node.mName.C_Str(), index);
-        m_character.m_nodes.push_back({parent, to_eigen(node.mTransformation), -1});
-        for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], index);
-    }
-
-    int node_index(const std::string& name, const std::string& place) const {
-        const auto found = m_nodes.find(name);
-        if (found == m_nodes.end())
-            fail(place, "refers to the unknown joint '" + name + "'",
-                 "export it again with its skeleton");
-        return found->second;
-    }
-
-    const aiAnimation& find_animation(const aiScene& scene, const std::string& name) const {
-        std::string names;
-        for (unsigned i = 0; i < scene.mNumAnimations; ++i) {
-            const std::string other = scene.mAnimations[i]->mName.C_Str();
-            if (name.empty() || other == name) return *scene.mAnimations[i];
-            names += " '" + other + "'";
-        }
-        if (names.empty())
-            fail("", "has no animation", "use load_mesh() for a mesh that does not move");
-        fail("animation " + name, "there is no such animation", "give one of" + names);
-    }
-
-    void add_animation(const aiAnimation& animation) {
-        // Files may leave the unit out; assimp's documentation names 25 as the convention then.
-        const double ticks = animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : 25.0;
-        for (unsigned c = 0; c < animation.mNumChannels; ++c) {
-            const aiNodeAnim& channel = *animation.mChannels[c];
-            const std::string place = std::string("channel ") + channel.mNodeName.C_Str();
-            const int node = node_index(channel.mNodeName.C_Str(), place);
-            m_character.m_nodes[node].track = static_cast<int>(m_character.m_tracks.size());
-            m_character.m_tracks.push_back(read_track(channel, ticks, place));
-        }
-        double end = animation.mDuration / ticks;
-        for (const SkinnedCharacter::Track& track : m_character.m_tracks)
-            for (const auto* times :
-                 {&track.position_times, &track.rotation_times, &track.scale_times})
-                end = std::max(end, times->back());
-        if (!std::isfinite(end)) fail("animation", "its duration is not finite", "export it again");
-        m_character.m_duration = end;
-    }
-
-    SkinnedCharacter::Track read_track(const aiNodeAnim& channel, double ticks,
-                                       const std::string& place) const {
-        SkinnedCharacter::Track track;
-        read_keys(channel.mPositionKeys, channel.mNumPositionKeys, ticks, place,
-                  track.position_times, track.positions);
-        read_keys(channel.mRotationKeys, channel.mNumRotationKeys, ticks, place,
-                  track.rotation_times, track.rotations);
-        read_keys(channel.mScalingKeys, channel.mNumScalingKeys, ticks, place, track.scale_times,
-                  track.scales);
-        return track;
-    }
-
-    static bool is_finite(const Vec3& value) { return value.allFinite(); }
-    static bool is_finite(const Eigen::Quaterniond& value) { return value.coeffs().allFinite(); }
-
-    template <typename Key, typename Value>
-    void read_keys(const Key* keys, unsigned count, double ticks, const std::string& place,
-                   std::vector<double>& times, std::vector<Value>& values) const {
-        if (count == 0) fail(place, "has no keys", "export the animation with baked keys");
-        for (unsigned k = 0; k < count; ++k) {
-            times.push_back(keys[k].mTime / ticks);
-            values.push_back(to_eigen(keys[k].mValue));
-            if (!std::isfinite(times.back()) || !is_finite(values.back()))
-                fail(place, "key " + std::to_string(k) + " is not finite", "export it again");
-            if (k > 0 && times[k] < times[k - 1])
-                fail(place, "its keys are not in order of time", "export it again");
-        }
-    }
-
-    void add_meshes(const aiNode& node, const aiScene& scene, const std::string& name) {
-        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-            const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
-            if (name.empty() || name == mesh.mName.C_Str() || name == node.mName.C_Str())
-                add_mesh(mesh, m_nodes.at(node.mName.C_Str()));
-        }
-        for (unsigned i = 0; i < node.mNumChildren; ++i)
-            add_meshes(*node.mChildren[i], scene, name);
-    }
-
-    void add_mesh(const aiMesh& mesh, int node) {
-        const std::string place = std::string("mesh ") + mesh.mName.C_Str();
-        const std::vector<int> numbers = add_vertices(mesh, place);
-        for (unsigned b = 0; b < mesh.mNumBones; ++b) add_bone(*mesh.mBones[b], numbers, place);
-        add_unbound(mesh, node, numbers);
-        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-            const aiFace& face = mesh.mFaces[f];
-            if (face.mNumIndices != 3) continue;  // loose points and edges of the file
-            Eigen::Vector3i corners;
-            for (unsigned c = 0; c < 3; ++c) {
-                if (face.mIndices[c] >= mesh.mNumVertices)
-                    fail(place + ", face " + std::to_string(f),
-                         "refers to a vertex that does not exist", "export the mesh again");
-                corners[c] = numbers[face.mIndices[c]];
-            }
-            const bool collapsed =
-                corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0];
-            if (!collapsed) m_faces.push_back(corners);
-        }
-    }
-
-    /// Welds vertices at exactly the same position (files split them along texture seams); returns
-    /// the number of each of the mesh's vertices.
-    std::vector<int> add_vertices(const aiMesh& mesh, const std::string& place) {
-        std::map<std::array<float, 3>, int> known;
-        std::vector<int> numbers;
-        for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-            const aiVector3D& p = mesh.mVertices[i];
-            if (!to_eigen(p).allFinite())
-                fail(place + ", vertex " + std::to_string(i), "its position is not finite",
-                     "export the mesh again");
-            const auto [entry, is_new] =
-                known.try_emplace({p.x, p.y, p.z}, static_cast<int>(m_vertices.size()));
-            if (is_new) {
-                m_vertices.push_back(to_eigen(p));
-                m_influences.emplace_back();
-            }
-            numbers.push_back(entry->second);
-        }
-        return numbers;
-    }
-
-    int add_binding(const std::string& name, int node, const Eigen::Affine3d& offset) {
-        m_character.m_joint_names.push_back(name);
-        m_character.m_bindings.push_back({node, offset});
-        return static_cast<int>(m_character.m_bindings.size()) - 1;
-    }
-
-    void add_bone(const aiBone& bone, const std::vector<int>& numbers, const std::string& place) {
-        const std::string name = bone.mName.C_Str();
-        const Eigen::Affine3d offset = to_eigen(bone.mOffsetMatrix);
-        if (!offset.matrix().allFinite())
-            fail(place + ", bone " + name, "its matrix is not finite", "export it again");
-        const int binding = add_binding(name, node_index(name, place + ", bone " + name), offset);
-        for (unsigned k = 0; k < bone.mNumWeights; ++k) {
-            const aiVertexWeight& weight = bone.mWeights[k];
-            if (weight.mVertexId >= numbers.size() || !std::isfinite(weight.mWeight))
-                fail(place + ", bone " + name, "a weight is not finite or of no vertex",
-                     "export it again");
-            if (weight.mWeight > 0.0f)
-                m_influences[numbers[weight.mVertexId]][binding] =
-                    static_cast<double>(weight.mWeight);
-        }
-    }
-
-    /// Vertices without bones follow the node that holds the mesh.
-    void add_unbound(const aiMesh& mesh, int node, const std::vector<int>& numbers) {
-        int binding = -1;
-        for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-            std::map<int, double>& influences = m_influences[numbers[i]];
-            if (!influences.empty()) continue;
-            if (binding < 0)
-                binding = add_binding(mesh.mName.C_Str(), node, Eigen::Affine3d::Identity());
-            influences[binding] = 1.0;
-        }
-    }
-
-    void finish() {
-        SkinnedCharacter& c = m_character;
-        c.m_rest.resize(static_cast<Eigen::Index>(m_vertices.size()), 3);
-        for (size_t i = 0; i < m_vertices.size(); ++i)
-            c.m_rest.row(static_cast<Eigen::Index>(i)) = m_vertices[i];
-        Faces faces(static_cast<Eigen::Index>(m_faces.size()), 3);
-        for (size_t f = 0; f < m_faces.size(); ++f)
-            faces.row(static_cast<Eigen::Index>(f)) = m_faces[f];
-        c.m_faces = std::make_shared<const Faces>(std::move(faces));
-        Eigen::MatrixXd dense =
-            Eigen::MatrixXd::Zero(c.m_rest.rows(), static_cast<Eigen::Index>(c.m_bindings.size()));
-        for (size_t i = 0; i < m_influences.size(); ++i)
-            for (const auto& [binding, weight] : m_influences[i])
-                dense(static_cast<Eigen::Index>(i), binding) = weight;
-        c.m_weights = sparse_weights(dense, max_influences, 0.0);
-    }
-
-    std::string m_path;
-    SkinnedCharacter& m_character;
-    std::map<std::string, int> m_nodes;
-    std::vector<Vec3> m_vertices;
-    std::vector<std::map<int, double>> m_influences;  ///< per vertex: binding -> weight
-    std::vector<Eigen::Vector3i> m_faces;
-};
-
 SkinnedCharacter::SkinnedCharacter(const std::string& path, const CharacterSettings& settings)
-    : MovingSurface(settings.friction), m_scale(settings.scale) {
+    : MovingSurface(settings.friction),
+      m_rig(load_character_rig(path, settings.animation, settings.mesh_name)),
+      m_faces(std::make_shared<const Faces>(m_rig.faces)),
+      m_scale(settings.scale) {
     if (!(settings.scale > 0.0))
         throw ArgumentError("scale", "is not positive", "give metres per unit of the file");
-    CharacterReader(path, *this).read(settings);
 }
 
-Eigen::Affine3d SkinnedCharacter::local_transform(const Node& node, double time) const {
+Eigen::Affine3d SkinnedCharacter::local_transform(const CharacterNode& node, double time) const {
     if (node.track < 0) return node.rest;
-    const Track& track = m_tracks[node.track];
+    const CharacterTrack& track = m_rig.tracks[node.track];
     return Eigen::Translation3d(sample(track.position_times, track.positions, time)) *
            sample(track.rotation_times, track.rotations, time) *
            Eigen::Scaling(sample(track.scale_times, track.scales, time));
@@ -296,15 +50,14 @@ Eigen::Affine3d SkinnedCharacter::local_transform(const Node& node, double time)
 
 Points SkinnedCharacter::vertices(double time) const {
     std::vector<Eigen::Affine3d> world;
-    for (const Node& node : m_nodes) {
+    for (const CharacterNode& node : m_rig.nodes) {
         const Eigen::Affine3d local = local_transform(node, time);
         world.push_back(node.parent < 0 ? local : world[node.parent] * local);
     }
     std::vector<SkinMatrix> matrices;
-    for (const Binding& binding : m_bindings)
-        matrices.emplace_back(m_scale *
-                              (world[binding.node] * binding.offset).matrix().topRows<3>());
-    return skin_points(m_rest, m_weights, matrices);
+    for (const CharacterJoint& joint : m_rig.joints)
+        matrices.emplace_back(m_scale * (world[joint.node] * joint.offset).matrix().topRows<3>());
+    return skin_points(m_rig.rest, m_rig.weights, matrices);
 }
 
 }  // namespace cloth

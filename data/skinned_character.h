@@ -1,10 +1,9 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "data/character_rig.h"
 #include "data/moving_surface.h"
-#include "data/skinning.h"
 
 namespace cloth {
 
@@ -28,44 +27,17 @@ class SkinnedCharacter : public MovingSurface {
 
     std::shared_ptr<const Faces> faces() const override { return m_faces; }
     Points vertices(double time) const override;
-    double duration() const override { return m_duration; }
+    double duration() const override { return m_rig.duration; }
 
-    const SkinWeights& weights() const { return m_weights; }
-    /// Names of the joints that `weights()` counts (a bone of two meshes is two joints).
-    const std::vector<std::string>& joint_names() const { return m_joint_names; }
+    /// Skeleton, skin weights and animation as the file has them.
+    const CharacterRig& rig() const { return m_rig; }
 
  private:
-    friend class CharacterReader;
+    Eigen::Affine3d local_transform(const CharacterNode& node, double time) const;
 
-    /// Values over time, interpolated linearly (rotations: spherically).
-    struct Track {
-        std::vector<double> position_times, rotation_times, scale_times;  ///< (s)
-        std::vector<Vec3> positions, scales;
-        std::vector<Eigen::Quaterniond> rotations;
-    };
-    /// A node of the file's scene; parents come first.
-    struct Node {
-        int parent = -1;
-        Eigen::Affine3d rest = Eigen::Affine3d::Identity();  ///< relative to the parent
-        int track = -1;                                      ///< -1: it does not move
-    };
-    /// What weights refer to: a node, and the map from the mesh's frame to the node's at binding.
-    struct Binding {
-        int node = 0;
-        Eigen::Affine3d offset = Eigen::Affine3d::Identity();
-    };
-
-    Eigen::Affine3d local_transform(const Node& node, double time) const;
-
-    std::vector<Node> m_nodes;
-    std::vector<Track> m_tracks;
-    std::vector<Binding> m_bindings;
-    std::vector<std::string> m_joint_names;
-    SkinWeights m_weights;
-    Points m_rest;  ///< in the frames of the meshes
+    CharacterRig m_rig;
     std::shared_ptr<const Faces> m_faces;
-    double m_scale = 1.0;
-    double m_duration = 0.0;
+    double m_scale;
 };
 
 }  // namespace cloth
