@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "data/errors.h"
@@ -29,6 +30,8 @@ Figure cmu_figure() {
              {"LowerBack", 6.5},
              {"Spine", 5.5},
              {"Spine1", 3.5},
+             {"LeftShoulder", 3.5},
+             {"RightShoulder", 3.5},
              {"Neck", -8.0},
              {"Neck1", 11.0},
              {"Head", 19.0}}};
@@ -244,6 +247,9 @@ std::vector<BodyPose> retarget(const Body& body, const Motion& motion,
     const double leg =
         0.5 * (rest.length("LeftUpLeg", "LeftLeg") + rest.length("LeftLeg", "LeftFoot") +
                rest.length("RightUpLeg", "RightLeg") + rest.length("RightLeg", "RightFoot"));
+    if (!(leg > 0.0))
+        throw LoadError(motion.source, "joint offsets", "the legs have no length",
+                        "export the motion with its skeleton's offsets");
     const double scale = body.leg_length() / leg;
 
     std::vector<BodyPose> poses;

@@ -202,6 +202,10 @@ TEST(AnimatedBody, AnUnknownSkeletonNamesTheMissingJoints) {
     expect_load_error([&] { AnimatedBody(default_body(), motion); }, "01_01.bvh",
                       "lacks the joints LeftLeg");
     motion = jumps();
+    motion.skeleton.offsets.setZero();
+    expect_load_error([&] { AnimatedBody(default_body(), motion); }, "01_01.bvh",
+                      "the legs have no length");
+    motion = jumps();
     motion.frames.clear();
     EXPECT_THROW(AnimatedBody(default_body(), motion), ArgumentError);
 }
