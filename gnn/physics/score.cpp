@@ -24,6 +24,13 @@ SurfaceContacts contacts_of(const ClothState& state, const Boundary& boundary) {
 
 }  // namespace
 
+Minimiser newton_minimiser(const Garment& garment, const NewtonSettings& settings) {
+    auto newton = std::make_shared<Newton>(garment, settings);
+    return [newton](const IncrementalPotential& potential, Points& x) {
+        return newton->minimise(potential, x);
+    };
+}
+
 Minimiser patient_quasi_newton(const Garment& garment) {
     QuasiNewtonSettings settings;
     settings.iterations = 2000;

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "gnn/physics/newton.h"
 #include "gnn/physics/quasi_newton.h"
 
 namespace cloth {
@@ -18,15 +19,18 @@ struct StepScore {
 /// Lowers E from x (|V| x 3), such as QuasiNewton::minimise or the reference's.
 using Minimiser = std::function<MinimiseReport(const IncrementalPotential&, Points& x)>;
 
-/// Quasi-Newton with many iterations (a relative gradient of 1e-5 or 2,000 iterations): for sheets
-/// as good as the reference, with contact as far as it goes.
+/// The reference's minimiser. Holds a factorisation: make it once per garment.
+Minimiser newton_minimiser(const Garment& garment, const NewtonSettings& settings = {});
+
+/// Quasi-Newton with many iterations (a residual of 1e-5 or 2,000 iterations): for soft cotton as
+/// good as Newton, for stiff cotton in contact only as far as it goes.
 Minimiser patient_quasi_newton(const Garment& garment);
 
 /// What every solver's result of one step is held against: the guess that solvers start from, the
 /// garment that does not move, and the lowest energy that a minimiser reaches. Built once per state
 /// and boundary, then shared by all solvers.
 ///
-///     StepReference reference(garment, {}, state, boundary, dt, patient_quasi_newton(garment));
+///     StepReference reference(garment, {}, state, boundary, dt, newton_minimiser(garment));
 ///     StepScore score = reference.score(x);
 class StepReference {
  public:

@@ -90,6 +90,17 @@ TEST(StepReference, KeepsTheLowerOfTwoMinima) {
     EXPECT_EQ(reference.minimum_energy(), patient_energy);
 }
 
+TEST(StepReference, NewtonAndPatientQuasiNewtonFindTheSameMinimum) {
+    const SolverScene scene = swinging_sheet(8);
+    NewtonSettings settings;
+    settings.tolerance = 1e-7;
+    const StepReference newton(scene.garment, {}, scene.state, scene.boundary, dt,
+                               newton_minimiser(scene.garment, settings));
+    const StepScore score = newton.score(reference_of(scene).minimum());
+    EXPECT_NEAR(score.gap, 0.0, 1e-8);
+    EXPECT_LE(score.rmse_mm, 1e-3);
+}
+
 TEST(StepReference, IsRefusedForAStateThatIsNotFinite) {
     SolverScene scene = swinging_sheet(6);
     scene.state.v(3, 0) = std::numeric_limits<double>::quiet_NaN();

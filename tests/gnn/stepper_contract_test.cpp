@@ -1,0 +1,31 @@
+#include "tests/gnn/stepper_contract.h"
+
+#include "gnn/physics/implicit_stepper.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+
+namespace cloth::testing {
+namespace {
+
+StepperCase quasi_newton(int iterations) {
+    const auto make = [iterations](const Garment& garment) {
+        QuasiNewtonSettings settings;
+        settings.iterations = iterations;
+        return std::make_unique<QuasiNewtonStepper>(garment, settings);
+    };
+    return {"QuasiNewton" + std::to_string(iterations), make, 1e-7, {}};
+}
+
+StepperCase reference() {
+    const auto make = [](const Garment& garment) {
+        return std::make_unique<ImplicitStepper>(garment);
+    };
+    return {"Reference", make, 1e-5, {}};
+}
+
+INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
+                         ::testing::Values(reference(), quasi_newton(1), quasi_newton(5),
+                                           quasi_newton(20)),
+                         case_name);
+
+}  // namespace
+}  // namespace cloth::testing
