@@ -222,23 +222,32 @@ TEST_F(Picture, SideTowardsTheKeyLightIsBrighter) {
     }
 }
 
-TEST_F(Picture, ClothThrowsItsShadowOnFloorAndBody) {
-    SceneMesh roof = sheet(0.6, 0, 0, 0, kRed);
-    roof.vertices.col(2) = -roof.vertices.col(1);
-    roof.vertices.col(1).setConstant(0.8);
-    Scene scene = scene_of({roof});
+/// A horizontal sheet above (x, 0).
+SceneMesh roof(double side, double x, double height) {
+    SceneMesh mesh = sheet(side, 0, 0, 0, kRed);
+    mesh.vertices.col(2) = -mesh.vertices.col(1);
+    mesh.vertices.col(1).setConstant(height);
+    mesh.vertices.col(0).array() += x;
+    return mesh;
+}
+
+TEST_F(Picture, ClothThrowsItsShadowAndNothingElseDoes) {
+    Scene scene = scene_of({roof(0.4, -0.5, 0.8), roof(0.4, 0.5, 0.8)});
     scene.ground.visible = true;
     scene.ground.grid = 100.0;
     scene.lights.key = Vec3(0, 1, 0.001);
     Camera camera = camera_at(4);
     camera.eye.y() = 1.0;
-    const Vec3 below(0.1, 0, 0.1), beside(0.6, 0, 0.1);
     const Image image = renderer->render(scene, camera);
     scene.lights.shadows = false;
     const Image unshaded = renderer->render(scene, camera);
-    EXPECT_LT(brightness(pixel_of(image, camera, below)),
-              0.85 * brightness(pixel_of(unshaded, camera, below)));
-    EXPECT_EQ(pixel_of(image, camera, beside), pixel_of(unshaded, camera, beside));
+    for (double x : {-0.5, 0.5}) {
+        const Vec3 below(x, 0, 0.1);
+        EXPECT_LT(brightness(pixel_of(image, camera, below)),
+                  0.85 * brightness(pixel_of(unshaded, camera, below)));
+    }
+    for (const Vec3& lit : {Vec3(0, 0, 0.1), Vec3(0.9, 0, 0.1), Vec3(0.5, 0.8, 0)})
+        EXPECT_EQ(pixel_of(image, camera, lit), pixel_of(unshaded, camera, lit)) << lit.x();
 }
 
 TEST_F(Picture, FloorFadesIntoTheBackground) {
@@ -264,6 +273,20 @@ TEST_F(Picture, FacesOfAFailedSolverAreLeftOutAndTheRestIsDrawn) {
     cloth.vertices(156, 2) = 1e30;
     const Image image = renderer->render(scene_of({cloth}), camera_at(3));
     EXPECT_TRUE(is_red(image.at(kSize / 2, kSize / 2)));
+
+    SceneMesh rest = sheet(1.0, 0, 0, 0, kRed);
+    Faces faces(0, 3);
+    for (int f = 0; f < rest.faces->rows(); ++f) {
+        const Eigen::RowVector3i face = rest.faces->row(f);
+        const auto touches = [&](int vertex) { return (face.array() == vertex).any(); };
+        if (touches(0) || touches(12) || touches(156)) continue;
+        faces.conservativeResize(faces.rows() + 1, 3);
+        faces.bottomRows<1>() = face;
+    }
+    EXPECT_LT(faces.rows(), rest.faces->rows());
+    rest.faces = std::make_shared<const Faces>(faces);
+    EXPECT_TRUE(equal(image, renderer->render(scene_of({rest}), camera_at(3))));
+
     cloth.vertices.setConstant(std::numeric_limits<double>::quiet_NaN());
     EXPECT_TRUE(equal(renderer->render(scene_of({cloth}), camera_at(3)),
                       renderer->render(scene_of({}), camera_at(3))));
