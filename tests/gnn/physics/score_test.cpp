@@ -57,7 +57,8 @@ TEST(StepReference, OrdersSolversByTheirIterations) {
 }
 
 TEST(StepReference, MeasuresDistanceInMillimetres) {
-    const StepReference reference = reference_of(swinging_sheet(8));
+    const SolverScene scene = swinging_sheet(8);
+    const StepReference reference = reference_of(scene);
     Points x = reference.minimum();
     x.rowwise() += Eigen::RowVector3d(3e-3, 0.0, 4e-3);
     EXPECT_NEAR(reference.score(x).rmse_mm, 5.0, 1e-9);
