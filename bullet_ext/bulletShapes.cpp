@@ -32,32 +32,22 @@ Pose axisFrame(int axis) {
     return frame;
 }
 
-/// Convex hull of points, its polygons cut into triangles; no faces if it has no volume.
-ShapePart hullPart(const std::vector<btVector3>& points) {
-    btConvexHullComputer hull;
-    hull.compute(&points[0][0], sizeof(btVector3), static_cast<int>(points.size()), 0, 0);
-    Points vertices(hull.vertices.size(), 3);
-    for (int i = 0; i < hull.vertices.size(); ++i) vertices.row(i) = toVec3(hull.vertices[i]);
-    std::vector<std::array<int, 3>> triangles;
-    for (int f = 0; f < hull.faces.size(); ++f) {
-        const btConvexHullComputer::Edge* first = &hull.edges[hull.faces[f]];
-        const int apex = first->getSourceVertex();
-        for (const auto* edge = first->getNextEdgeOfFace(); edge->getTargetVertex() != apex;
-             edge = edge->getNextEdgeOfFace())
-            triangles.push_back({apex, edge->getSourceVertex(), edge->getTargetVertex()});
-    }
-    Faces faces(static_cast<Eigen::Index>(triangles.size()), 3);
-    for (size_t f = 0; f < triangles.size(); ++f)
-        faces.row(static_cast<Eigen::Index>(f)) << triangles[f][0], triangles[f][1],
-            triangles[f][2];
-    // Bullet does not promise on which side its polygons are counter-clockwise.
+/// Bullet does not promise on which side its polygons are counter-clockwise.
+void turnOutward(const Points& vertices, Faces& faces) {
     const Points areas = face_area_vectors(vertices, faces);
     const Eigen::RowVector3d centre = vertices.colwise().mean();
     double volume = 0.0;
     for (Eigen::Index f = 0; f < faces.rows(); ++f)
         volume += areas.row(f).dot(vertices.row(faces(f, 0)) - centre);
     if (volume < 0.0) faces.col(1).swap(faces.col(2));
-    return meshPart(std::move(vertices), std::move(faces));
+}
+
+ShapePart hullPart(const std::vector<btVector3>& points) {
+    Points rows(static_cast<Eigen::Index>(points.size()), 3);
+    for (size_t i = 0; i < points.size(); ++i)
+        rows.row(static_cast<Eigen::Index>(i)) = toVec3(points[i]);
+    TriMesh hull = convexHull(rows);
+    return meshPart(std::move(hull.vertices), std::move(hull.faces));
 }
 
 /// A body of revolution about the axis: the rings (height, radius) joined from bottom to top.
@@ -215,6 +205,28 @@ ShapePart partOfShape(const btCollisionShape& shape) {
 }
 
 }  // namespace
+
+TriMesh convexHull(const Points& points) {
+    if (points.rows() < 4) return {};
+    btConvexHullComputer hull;
+    hull.compute(points.data(), 3 * sizeof(double), static_cast<int>(points.rows()), 0, 0);
+    Points vertices(hull.vertices.size(), 3);
+    for (int i = 0; i < hull.vertices.size(); ++i) vertices.row(i) = toVec3(hull.vertices[i]);
+    std::vector<std::array<int, 3>> triangles;
+    for (int f = 0; f < hull.faces.size(); ++f) {
+        const btConvexHullComputer::Edge* first = &hull.edges[hull.faces[f]];
+        const int apex = first->getSourceVertex();
+        for (const auto* edge = first->getNextEdgeOfFace(); edge->getTargetVertex() != apex;
+             edge = edge->getNextEdgeOfFace())
+            triangles.push_back({apex, edge->getSourceVertex(), edge->getTargetVertex()});
+    }
+    Faces faces(static_cast<Eigen::Index>(triangles.size()), 3);
+    for (size_t f = 0; f < triangles.size(); ++f)
+        faces.row(static_cast<Eigen::Index>(f)) << triangles[f][0], triangles[f][1],
+            triangles[f][2];
+    turnOutward(vertices, faces);
+    return {std::move(vertices), std::move(faces)};
+}
 
 std::vector<ShapePart> partsOfShape(const btCollisionShape& shape) {
     if (shape.getShapeType() == COMPOUND_SHAPE_PROXYTYPE)

@@ -5,6 +5,7 @@
 
 #include "bullet_ext/bulletTypes.h"
 #include "data/boundary.h"
+#include "data/mesh.h"
 
 class btCollisionShape;
 
@@ -27,6 +28,10 @@ struct ShapePart {
 ///
 /// @return  empty if the shape is empty or of a kind that has no surface
 std::vector<ShapePart> partsOfShape(const btCollisionShape& shape);
+
+/// Convex hull of points (|P| x 3, m): faces counter-clockwise from outside; no faces if the points
+/// span no volume.
+TriMesh convexHull(const Points& points);
 
 /// A number that changes when the shape at an address is replaced or rescaled.
 size_t shapeSignature(const btCollisionShape& shape);

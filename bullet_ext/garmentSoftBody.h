@@ -15,7 +15,7 @@ struct SoftBodySettings {
     double margin = 4e-3;    ///< distance kept from obstacles (m), 1e-3 to 0.05; Bullet's own: 0.25
     double stiffness = 1.0;  ///< kLST of the edges, 0 to 1
     double bending = 0.1;    ///< kLST of the links across hinges, 0 to 1; 0: no such links
-    double friction = 0.5;   ///< kDF, times the obstacle's friction, 0 to 1
+    double friction = 1.0;   ///< kDF, times the obstacle's friction, 0 to 1
     double contact_hardness =
         1.0;  ///< kCHR and kKHR, 0 to 1; Bullet's kKHR of 0.1 lets cloth through
 };

@@ -124,8 +124,17 @@ void SoftBodyStep::takeNodes() {
     }
 }
 
+/// Wind, by Bullet's aerodynamic models; as in Bullet they see the velocity with gravity's part.
+void SoftBodyStep::takeWind() {
+    if (!(m_body.m_cfg.kLF > 0) && !(m_body.m_cfg.kDG > 0)) return;
+    m_body.addVelocity(m_body.m_worldInfo->m_gravity * m_body.m_sst.sdt);
+    m_body.applyForces();
+    for (int i = 0; i < m_body.m_nodes.size(); ++i)
+        m_body.m_nodes[i].m_v = toBullet(Vec3(m_shown.v.row(i)));
+}
+
 void SoftBodyStep::takeForces() {
-    m_body.applyForces();  // wind, by Bullet's aerodynamic models
+    takeWind();
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         btSoftBody::Node& node = m_body.m_nodes[i];
         if (node.m_im > 0 && finite(node.m_f)) m_impulse.row(i) += m_h * toVec3(node.m_f);

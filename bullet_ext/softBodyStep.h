@@ -51,6 +51,7 @@ class SoftBodyStep {
     int restoreNodes();
     void takeConstants();
     void takeNodes();
+    void takeWind();
     void takeForces();
     void takePins();
     Points pinsAt(double time) const;

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bullet_ext/bodySegments.h"
+#include "bullet_ext/garmentSoftBody.h"
+#include "gnn/stepper.h"
+
+namespace cloth {
+
+/// How Bullet's own cloth is run as a baseline.
+struct BulletClothSettings {
+    std::string name = "bullet";
+    double substep_dt = 1.0 / 60.0;  ///< a step is cut into equal sub-steps of about this (s)
+    SoftBodySettings cloth;
+    double voxel = 0.02;  ///< cell size of Bullet's distance fields (m), 0.01 to 0.05; Bullet's
+                          ///< 0.25 lets cloth pass through small hulls
+    double hull_margin = 0.0;  ///< how far hulls are blown up (m), 0 to 0.01
+    int segments = 70;         ///< hulls made of a mesh obstacle that comes without segments
+
+    /// "bullet": 1/60 s and 10 iterations, what people ship; with another number of iterations
+    /// "bullet-K".
+    static BulletClothSettings shipped(int iterations = 10);
+    /// "bullet-fine": 1/240 s and 5 iterations, what holds.
+    static BulletClothSettings fine();
+};
+
+/// Bullet's own soft body solver in a world of its own, as a competent Bullet user sets it up for
+/// an animated character: one convex hull per body segment, moved rigidly with it.
+///
+///     BulletClothStepper stepper(garment, BulletClothSettings::shipped(),
+///                                segment_body(body.rest_mesh(), body.dominant_joint()));
+///
+/// A segment's motion is the rigid motion that fits its vertices of the mesh obstacle best at t and
+/// at t + dt. The segments belong to the first mesh obstacle that has their vertices; other meshes
+/// are cut into hulls at first sight. Primitives are Bullet's primitives, a plane is a large box.
+///
+/// Not promised: state.v is the velocity at the end of the last sub-step, so that a ClothState is
+/// all of Bullet's state, and differs from (x_t - x_{t-1}) / dt; numbers are floats; the material
+/// is Bullet's (SoftBodySettings), the garment's fabric only gives the masses; max_penetration is
+/// not measured (NaN), hulls being no exact copy of the obstacle.
+class BulletClothStepper : public Stepper {
+ public:
+    /// Keeps a reference to `garment`.
+    /// @throws ArgumentError if a setting is out of range
+    explicit BulletClothStepper(const Garment& garment, BulletClothSettings settings = {},
+                                std::vector<BodySegment> segments = {});
+    ~BulletClothStepper() override;
+
+    std::string name() const override { return m_settings.name; }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+
+ private:
+    class World;
+
+    const Garment& m_garment;
+    BulletClothSettings m_settings;
+    std::vector<BodySegment> m_segments;
+    std::unique_ptr<World> m_world;  ///< made anew after a step that failed
+};
+
+}  // namespace cloth
