@@ -15,6 +15,8 @@ constexpr int max_halvings = 20;        // of one line search
 constexpr int max_factorisations = 30;  // of one iteration, each with four times the shift
 constexpr double shift_factor = 2.0;    // by which the shift follows the line search
 constexpr int retry_exact_after = 2;    // projected steps after the exact Hessian was indefinite
+constexpr double still_falling = 0.3;   // share of the slope that makes a full step worth widening
+constexpr int max_widenings = 6;        // of one line search
 constexpr double entry_depth = 5e-5;    // depth (m) at which a trial step may enter a contact
 
 Eigen::Map<const VectorX> flat(const Points& points) {
@@ -142,24 +144,32 @@ double Newton::slope_along(const Points& gradient) const {
     return flat(gradient).dot(m_direction);
 }
 
+/// Sets m_trial to x + step * direction and returns its energy; its gradient is in
+/// m_trial_gradient.
+double Newton::try_step(const IncrementalPotential& potential, const Points& x, double step,
+                        MinimiseReport& report) {
+    m_trial = x;
+    Eigen::Map<VectorX>(m_trial.data(), m_trial.size()) += step * m_direction;
+    limit_entry(potential, x, m_trial);
+    report.evaluations += 1;
+    return potential.value_gradient(m_trial, m_trial_gradient);
+}
+
 /// Leaves the accepted position in m_trial, its gradient in m_trial_gradient and its energy in the
 /// report. Returns the step length, 0: none was found. Where the decrease drowns in rounding, a
-/// smaller slope counts instead (Hager and Zhang 2005).
+/// smaller gradient counts instead.
 double Newton::line_search(const IncrementalPotential& potential, const Points& x,
                            MinimiseReport& report) {
     const double slope = slope_along(m_gradient);
     double step = 1.0;
     for (int k = 0; k < max_halvings; ++k) {
-        m_trial = x;
-        Eigen::Map<VectorX>(m_trial.data(), m_trial.size()) += step * m_direction;
-        limit_entry(potential, x, m_trial);
-        const double energy = potential.value_gradient(m_trial, m_trial_gradient);
-        report.evaluations += 1;
+        const double energy = try_step(potential, x, step, report);
         const bool decreases = energy <= report.energy + armijo * step * slope;
         const bool flattens = std::fabs(energy - report.energy) <= rounding(report.energy) &&
                               m_trial_gradient.norm() < m_gradient.norm();
         if ((decreases || flattens) && m_trial_gradient.allFinite()) {
             report.energy = energy;
+            if (k == 0 && decreases) return widen(potential, x, slope, report);
             return step;
         }
         step = shorten(step, slope, report.energy, energy);
@@ -167,10 +177,31 @@ double Newton::line_search(const IncrementalPotential& potential, const Points& 
     return 0.0;
 }
 
+/// Doubles an accepted full step as long as the energy falls at nearly the old slope: where the
+/// Hessian was projected, cloth that buckles wants to go much farther than the model says.
+double Newton::widen(const IncrementalPotential& potential, const Points& x, double slope,
+                     MinimiseReport& report) {
+    double step = 1.0;
+    for (int k = 0; k < max_widenings; ++k) {
+        if (slope_along(m_trial_gradient) > still_falling * slope) break;
+        m_accepted.swap(m_trial);
+        m_accepted_gradient.swap(m_trial_gradient);
+        const double energy = try_step(potential, x, 2.0 * step, report);
+        if (!(energy < report.energy) || !m_trial_gradient.allFinite()) {
+            m_accepted.swap(m_trial);
+            m_accepted_gradient.swap(m_trial_gradient);
+            break;
+        }
+        report.energy = energy;
+        step *= 2.0;
+    }
+    return step;
+}
+
 void Newton::adapt_shift(double step) {
     if (step < 0.5)
         m_shift = std::max(1.0, shift_factor * m_shift);
-    else if (step == 1.0)
+    else if (step >= 1.0)
         m_shift = m_shift / shift_factor < 0.3 ? 0.0 : m_shift / shift_factor;
 }
 
