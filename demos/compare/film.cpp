@@ -82,6 +82,7 @@ class FilmStudio {
         Label label;
         label.text = caption(film, frame);
         label.text_height = 20;
+        label.corner = LabelCorner::bottom_left;
         scene.labels.push_back(label);
         scene.ground.centre = skin.colwise().mean().transpose();
         return scene;
