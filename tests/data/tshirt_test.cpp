@@ -121,6 +121,14 @@ TEST(Tshirt, LoadsAsAGarmentOfAFabric) {
     EXPECT_THROW(load_garment("no_such_garment"), LoadError);
 }
 
+TEST(Tshirt, VertexCountsOutOfRangeAreRefused) {
+    for (int vertices : {-1, 0, 499, 20001}) {
+        TshirtRecipe recipe;
+        recipe.target_vertices = vertices;
+        EXPECT_THROW(make_tshirt(default_skin().surface(), recipe), ArgumentError);
+    }
+}
+
 TEST(TshirtRecipe, CommittedRecipeHoldsTheDefaults) {
     const TshirtRecipe file = load_tshirt_recipe(asset_path("garments/tshirt.json"));
     const TshirtRecipe defaults;
