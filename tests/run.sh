@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds, runs every test. Quick the second time.
-#   tests/run.sh [PRESET]   preset of CMakePresets.json: ci (default), dev, asan, notorch, release
+#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch
 set -euo pipefail
 cd "$(dirname "$0")/.."
-preset="${1:-ci}"
+preset="${1:-release}"
 
 case "$preset" in
   asan | notorch) CLOTH_WITH_TORCH=0 demos/install_packages.sh ;;
