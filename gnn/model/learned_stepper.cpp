@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
+#include "collision/resolve.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 
@@ -88,6 +90,7 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
 
 void LearnedStepper::refine(StepReport& report) {
     m_x = m_prediction;
+    report.residual = std::numeric_limits<double>::quiet_NaN();
     if (m_settings.refine == 0) return;
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     report.iterations = minimum.iterations;
@@ -98,8 +101,11 @@ void LearnedStepper::refine(StepReport& report) {
 bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& state,
                             StepReport& report) {
     if (!m_x.allFinite()) return false;
-    m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
-    report.max_penetration = m_distance.size() > 0 ? std::max(0.0, -m_distance.minCoeff()) : 0.0;
+    const ResolveReport resolved =
+        resolve_penetration(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
+    place_pins(*m_garment, boundary, m_x);
+    if (!m_x.allFinite()) return false;
+    report.max_penetration = resolved.max_depth_after;
     state.v = (m_x - state.x) / dt;
     state.x = m_x;
     state.time += dt;

@@ -13,12 +13,15 @@ namespace cloth {
 struct LearnedStepperSettings {
     int refine = 2;  ///< quasi-Newton iterations after the network, 0 to 100; 0: the paper's
                      ///< method, which may blow up in long motions
+    double safety_distance = 0.0;  ///< vertices that end nearer to an obstacle are pushed out to
+                                   ///< this distance (m), 0 to 1e-3
     PotentialSettings potential;
     ProximitySettings proximity;
 };
 
-/// The learned step: projected extrapolation, one evaluation of the network, then a few
-/// quasi-Newton iterations on the same energy as its safeguard.
+/// The learned step: projected extrapolation, one evaluation of the network, a few quasi-Newton
+/// iterations on the same energy as its safeguard, and what is still inside an obstacle is pushed
+/// out.
 ///
 ///     LearnedStepper stepper(garment, predictor, {});
 ///     StepReport report = stepper.step(boundary, stepper.fixed_dt(), state);
@@ -53,10 +56,9 @@ class LearnedStepper : public Stepper {
     IncrementalPotential m_potential;
     QuasiNewton m_solver;
     FeatureBuilder m_builder;
-    SurfaceContacts m_contacts;
+    SurfaceContacts m_contacts, m_resolved;
     Features m_features;
     Points m_guess, m_output, m_prediction, m_x;
-    VectorX m_distance;
     bool m_fell_back = false;
 };
 

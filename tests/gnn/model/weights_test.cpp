@@ -1,0 +1,142 @@
+#include "gnn/model/weights.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "data/errors.h"
+
+namespace cloth {
+namespace {
+
+Weights small_weights() {
+    Weights weights;
+    weights.config = ModelConfig::variant_named("fast");
+    weights.config.width = 4;
+    weights.config.steps = 2;
+    float value = 0.0f;
+    for (const auto& shapes : {parameter_shapes(weights.config), statistics_shapes(weights.config)})
+        for (const auto& [name, shape] : shapes) {
+            size_t count = 1;
+            for (int size : shape) count *= static_cast<size_t>(size);
+            WeightTensor& tensor = weights.tensors[name];
+            tensor.shape = shape;
+            for (size_t i = 0; i < count; ++i) tensor.data.push_back(value += 0.25f);
+        }
+    return weights;
+}
+
+class WeightsFile : public testing::Test {
+ protected:
+    void SetUp() override {
+        m_file = testing::TempDir() + "weights_" +
+                 testing::UnitTest::GetInstance()->current_test_info()->name() + ".safetensors";
+        small_weights().save(m_file);
+        std::ifstream in(m_file, std::ios::binary);
+        m_bytes.assign(std::istreambuf_iterator<char>(in), {});
+    }
+    void TearDown() override { std::filesystem::remove(m_file); }
+
+    void write(const std::string& bytes) const { std::ofstream(m_file, std::ios::binary) << bytes; }
+    void replace(const std::string& from, const std::string& to) {
+        ASSERT_EQ(from.size(), to.size());
+        const size_t at = m_bytes.find(from);
+        ASSERT_NE(at, std::string::npos);
+        write(m_bytes.replace(at, from.size(), to));
+    }
+    /// The message that loading fails with.
+    std::string refusal() const {
+        try {
+            Weights::load(m_file);
+        } catch (const LoadError& error) {
+            return error.what();
+        }
+        ADD_FAILURE() << "the file was accepted";
+        return "";
+    }
+
+    std::string m_file, m_bytes;
+};
+
+TEST_F(WeightsFile, ReadsWhatWasWritten) {
+    const Weights original = small_weights(), loaded = Weights::load(m_file);
+    EXPECT_TRUE(loaded.config == original.config);
+    ASSERT_EQ(loaded.tensors.size(), original.tensors.size());
+    for (const auto& [name, tensor] : original.tensors) {
+        EXPECT_EQ(loaded.tensor(name).shape, tensor.shape);
+        EXPECT_EQ(loaded.tensor(name).data, tensor.data);
+    }
+    EXPECT_FALSE(std::filesystem::exists(m_file + ".tmp"));
+}
+
+TEST_F(WeightsFile, RefusesEveryTruncation) {
+    for (size_t length = 0; length < m_bytes.size(); length += 1 + m_bytes.size() / 97) {
+        write(m_bytes.substr(0, length));
+        EXPECT_NE(refusal().find(m_file), std::string::npos) << "length " << length;
+    }
+}
+
+TEST_F(WeightsFile, RefusesAnotherVersion) {
+    replace("\"version\":\"1\"", "\"version\":\"9\"");
+    EXPECT_NE(refusal().find("version"), std::string::npos);
+}
+
+TEST_F(WeightsFile, RefusesAMissingTensorByName) {
+    replace("\"decoder.output.bias\"", "\"decoder.output.bins\"");
+    EXPECT_NE(refusal().find("tensor decoder.output.bias: is missing"), std::string::npos);
+}
+
+TEST_F(WeightsFile, RefusesATensorOfAnotherShapeByName) {
+    replace("\"shape\":[3,4]", "\"shape\":[4,3]");
+    const std::string message = refusal();
+    EXPECT_NE(message.find("decoder.output.weight"), std::string::npos) << message;
+    EXPECT_NE(message.find("[4,3]"), std::string::npos) << message;
+}
+
+TEST_F(WeightsFile, RefusesANumberThatIsNotFinite) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    m_bytes.replace(m_bytes.size() - sizeof nan, sizeof nan, reinterpret_cast<const char*>(&nan),
+                    sizeof nan);
+    write(m_bytes);
+    EXPECT_NE(refusal().find("not finite"), std::string::npos);
+}
+
+TEST_F(WeightsFile, RefusesAFileThatIsSomethingElse) {
+    write(std::string(4096, 'x'));
+    EXPECT_NE(refusal().find("safetensors"), std::string::npos);
+    std::filesystem::remove(m_file);
+    EXPECT_NE(refusal().find("cannot be opened"), std::string::npos);
+}
+
+TEST_F(WeightsFile, RefusesAConfigurationOutOfRange) {
+    replace("\\\"steps\\\":2", "\\\"steps\\\":0");
+    EXPECT_NE(refusal().find("steps"), std::string::npos);
+}
+
+TEST(Weights, AreNotSavedIncomplete) {
+    Weights weights = small_weights();
+    weights.tensors.erase("decoder.output.bias");
+    EXPECT_THROW(weights.save(testing::TempDir() + "incomplete.safetensors"), ArgumentError);
+}
+
+TEST(ModelConfig, VariantsAreThoseOfThePaper) {
+    EXPECT_EQ(ModelConfig::variant_named("baseline").sampled_edges, 0);
+    EXPECT_TRUE(ModelConfig::variant_named("sampling").body_updates);
+    EXPECT_FALSE(ModelConfig::variant_named("reduction").world_every_step);
+    EXPECT_EQ(ModelConfig::variant_named("fast").sampled_edges, 4);
+    EXPECT_THROW(ModelConfig::variant_named("faster"), ArgumentError);
+}
+
+TEST(ModelConfig, SurvivesItsText) {
+    ModelConfig config = ModelConfig::variant_named("sampling");
+    config.width = 48;
+    config.features.force_features = false;
+    EXPECT_TRUE(ModelConfig::from_json(config.to_json(), "here") == config);
+    EXPECT_THROW(ModelConfig::from_json("{}", "here"), LoadError);
+}
+
+}  // namespace
+}  // namespace cloth
