@@ -3,6 +3,8 @@
 # report. Quick the second time. Further arguments are handed to `compare`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# compiled objects are found again in another checkout
+export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 
 demos/install_packages.sh
 echo "== configure and build"

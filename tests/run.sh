@@ -3,6 +3,8 @@
 #   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch
 set -euo pipefail
 cd "$(dirname "$0")/.."
+# compiled objects are found again in another checkout
+export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 preset="${1:-release}"
 
 case "$preset" in
