@@ -199,11 +199,13 @@ void BlockCholesky::take_update(int child, MatrixMap& panel, MatrixMap& update) 
     for (int column = 0; column < count; ++column)
         for (int c = 0; c < 3; ++c) {
             const int target = 3 * places[static_cast<size_t>(column)] + c;
-            double* to = target < width ? &panel(0, target) : &update(0, target - width) - width;
+            const int skipped = target < width ? 0 : width;  // rows above the update matrix
+            double* to = target < width ? &panel(0, target) : &update(0, target - width);
             const double* own = &from(0, 3 * column + c);
-            for (int row = column; row < count; ++row)
-                for (int r = 0; r < 3; ++r)
-                    to[3 * places[static_cast<size_t>(row)] + r] += own[3 * row + r];
+            for (int row = column; row < count; ++row) {
+                const int place = 3 * places[static_cast<size_t>(row)] - skipped;
+                for (int r = 0; r < 3; ++r) to[place + r] += own[3 * row + r];
+            }
         }
     storage = {};
 }
