@@ -100,6 +100,7 @@ class BulletClothStepper::World {
 BulletClothSettings BulletClothSettings::shipped(int iterations) {
     BulletClothSettings settings;
     settings.cloth.iterations = iterations;
+    settings.cloth.margin = 0.01;
     if (iterations != 10) settings.name = "bullet-" + std::to_string(iterations);
     return settings;
 }
