@@ -23,7 +23,14 @@ bool hasFiniteNodes(const btSoftBody& body) {
 Garment scaledGarment(const Garment& garment, double factor) {
     cloth::TriMesh rest = garment.rest();
     rest.vertices *= factor;
-    return Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins());
+    const bool curved = (garment.hinge_rest_angles().array() != 0.0).any();
+    return Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins(), curved);
+}
+
+/// A number that a body gets when it is added to a world; 0 if it is in none.
+int worldIdOf(const btSoftBody& body) {
+    const btBroadphaseProxy* proxy = body.getBroadphaseHandle();
+    return proxy ? proxy->getUid() : 0;
 }
 
 }  // namespace
@@ -42,6 +49,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
     Entry& entry = m_entries[body];
     entry.detached = false;
+    entry.worldId = 0;
     build(*body, entry);
 }
 
@@ -53,6 +61,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
     entry.given = std::make_shared<const Garment>(garment);
     entry.factory = std::move(factory);
     entry.detached = false;
+    entry.worldId = 0;
     build(*body, entry);
 }
 
@@ -61,6 +70,7 @@ void btGnnSoftBodySolver::detach(btSoftBody* body) {
     entry.step.reset();
     entry.stepping = Stepping::bullet;
     entry.detached = true;
+    entry.worldId = 0;
 }
 
 /// Makes garment and stepper of the body as it is now.
@@ -132,13 +142,13 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
     btDefaultSoftBodySolver::optimize(softBodies, forceUpdate);
     for (int i = 0; i < softBodies.size(); ++i) {
         btSoftBody& body = *softBodies[i];
-        const auto [it, added] = m_entries.try_emplace(&body);
-        Entry& entry = it->second;
+        Entry& entry = m_entries[&body];
+        const int id = worldIdOf(body);
+        // Added again, or another body at the address of one that is gone.
+        if (entry.worldId != 0 && entry.worldId != id) entry = Entry();
+        entry.worldId = id;
         entry.seen = true;
-        if (added && cloth::isCloth(body))
-            tryBuild(body, entry);
-        else
-            refresh(body, entry);
+        refresh(body, entry);
     }
     for (auto it = m_entries.begin(); it != m_entries.end();) {
         const bool gone =

@@ -80,7 +80,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// @throws cloth::ArgumentError naming the body, what is wrong with it and the remedy
     void attach(btSoftBody* body);
     /// The same with the body's garment (its rest shape and fabric; pins are taken from the body)
-    /// and, if given, its own kind of stepper.
+    /// and, if given, its own kind of stepper. It holds until the body leaves the world.
     void attach(btSoftBody* body, const cloth::Garment& garment,
                 cloth::StepperFactory factory = nullptr);
     /// Leaves the body to Bullet's own code from now on.
@@ -119,6 +119,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     struct Entry {
         Stepping stepping = Stepping::bullet;
         bool detached = false;  ///< the user chose Bullet
+        int worldId = 0;        ///< of the body in its world; 0: not seen there yet
         bool seen = false;      ///< was part of the world
         std::unique_ptr<cloth::SoftBodyStep> step;
         std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null

@@ -57,8 +57,11 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
 }
 
 SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, double reach) {
-    m_h = h * static_cast<double>(m_body.m_cfg.timescale);
+    m_time_scale = static_cast<double>(m_body.m_cfg.timescale);
+    m_h = h * m_time_scale;
     Result result;
+    // A paused body, or one whose nodes changed since the solver looked at it: next step.
+    if (!(m_h > 0.0) || m_body.m_nodes.size() != m_shown.x.rows()) return result;
     takeConstants();
     result.restored_nodes = restoreNodes();
     takeNodes();
@@ -155,8 +158,10 @@ void SoftBodyStep::takePins() {
     for (int a = 0; a < m_body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
-        const auto pin = std::lower_bound(pins.begin(), pins.end(), node) - pins.begin();
-        m_pins_after.row(pin) = toVec3(anchor.m_body->getWorldTransform() * anchor.m_local);
+        const auto pin = std::lower_bound(pins.begin(), pins.end(), node);
+        if (pin != pins.end() && *pin == node)
+            m_pins_after.row(pin - pins.begin()) =
+                toVec3(anchor.m_body->getWorldTransform() * anchor.m_local);
     }
 }
 
@@ -172,7 +177,8 @@ Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, double reach) 
     boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
     boundary.pin_targets = pinsAt(m_tick.begin + m_tick.length);
     const Box box = boxAhead(m_tick.from, m_tick.length, reach);
-    boundary.obstacles = obstacles.near(m_body, box.low, box.high, {m_tick.begin, m_tick.length});
+    boundary.obstacles = obstacles.near(
+        m_body, box.low, box.high, {m_tick.begin / m_time_scale, m_tick.length / m_time_scale});
     if (!m_impulse.isZero(0.0)) {
         boundary.accelerations = m_impulse / m_tick.length;
         for (int i = 0; i < m_body.m_nodes.size(); ++i)

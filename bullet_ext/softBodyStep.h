@@ -65,7 +65,8 @@ class SoftBodyStep {
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
     StepReport m_report;
-    double m_h = 0.0;  ///< the present world step (s)
+    double m_time_scale = 1.0;  ///< time of the cloth over time of the world
+    double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
     Tick m_tick;
     ClothState m_shown;            ///< what the nodes say, in doubles
     Points m_impulse;              ///< |V| x 3 (N s): forces of the world steps since the last tick

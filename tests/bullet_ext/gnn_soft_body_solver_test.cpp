@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
@@ -337,6 +338,83 @@ TEST(GnnSolver, BodiesComeAndGo) {
     EXPECT_NE(solver.stepperOf(third), nullptr);
     EXPECT_NEAR(third->m_nodes[0].m_v.y(), -9.81 / 60, 1e-4);
     EXPECT_NEAR(second->m_nodes[0].m_v.y(), -9.81 * 7 / 60, 1e-4);
+}
+
+TEST(GnnSolver, ANewBodyAtAnOldAddressIsANewBody) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = patch(world.info(), {0, 0, 0});
+    world->addSoftBody(cloth);
+    world.step(1.0 / 60.0, 3);
+    world->removeSoftBody(cloth);
+    cloth->~btSoftBody();
+    const btVector3 x[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
+    const btScalar masses[] = {1, 1, 1, 1};
+    new (cloth) btSoftBody(&world.info(), 4, x, masses);
+    cloth->appendFace(0, 2, 1);
+    cloth->appendFace(1, 2, 3);
+    world.add(cloth);
+    world.step(1.0 / 60.0);
+    ASSERT_NE(solver.garmentOf(cloth), nullptr);
+    EXPECT_EQ(solver.garmentOf(cloth)->vertex_count(), 4);
+    EXPECT_NEAR(cloth->m_nodes[0].m_v.y(), -9.81 / 60, 1e-5);
+}
+
+TEST(GnnSolver, AddingABodyAgainStartsAfresh) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0, 3);
+    solver.detach(cloth);
+    world->removeSoftBody(cloth);
+    world->addSoftBody(cloth);
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(solver.status().bulletBodies, 1);  // detach() came last
+    world->removeSoftBody(cloth);
+    world->addSoftBody(cloth);
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(solver.status().clothBodies, 1);
+}
+
+TEST(GnnSolver, TimescaleStretchesTheClothsTimeOnly) {
+    auto log = std::make_shared<FreeFall::Log>();
+    btGnnSoftBodySolver solver(free_fall(log));
+    World world(&solver);
+    btRigidBody* sphere = world.add(new btSphereShape(0.1f), {0, -0.1f, 0}, true);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+    cloth->m_cfg.timescale = 0.5f;
+    world.step(1.0 / 60.0);
+    EXPECT_NEAR(log->dts.at(0), 1.0 / 120.0, 1e-7);
+    sphere->setWorldTransform(btTransform(btQuaternion::getIdentity(), {0.01f, -0.1f, 0}));
+    world.step(1.0 / 60.0);
+    EXPECT_NEAR(log->boundaries.at(1).obstacles.at(0).pose1.translation().x(), 0.01, 1e-6);
+    const double y = node(*cloth, 0).y();
+    cloth->m_cfg.timescale = 0;  // paused
+    world.step(1.0 / 60.0, 5);
+    EXPECT_EQ(node(*cloth, 0).y(), y);
+}
+
+TEST(GnnSolver, ChangesFromATickCallbackDoNoHarm) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    static btSoftBody* cloth;
+    static btRigidBody* box;
+    box = world.add(new btBoxShape({0.1f, 0.1f, 0.1f}), {5, 5, 5}, true);
+    cloth = world.add(patch(world.info(), {0, 0, 0}));
+    static int calls;
+    calls = 0;
+    world->setInternalTickCallback([](btDynamicsWorld*, btScalar) {
+        ++calls;
+        if (calls == 2) cloth->appendAnchor(3, box, true);
+        if (calls == 4) {
+            cloth->appendNode({0.9f, 0, 0}, 1);
+            cloth->appendFace(24, 23, 25);
+        }
+    });
+    EXPECT_NO_THROW(world.step(1.0 / 60.0, 6));
+    EXPECT_EQ(solver.garmentOf(cloth)->vertex_count(), 26);
+    EXPECT_EQ(solver.garmentOf(cloth)->pins(), std::vector<int>{3});
+    for (const btVector3& x : positions(*cloth)) EXPECT_TRUE(std::isfinite(x.length()));
 }
 
 TEST(GnnSolver, RepinnedClothKeepsItsRestShapeAndVelocity) {
