@@ -7,12 +7,13 @@
 namespace cloth {
 
 struct QuasiNewtonSettings {
-    int iterations = 10;     ///< at most, 0 to 10000; each costs about one energy and one solve
+    int iterations =
+        10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
     double tolerance = 0.0;  ///< stop at this residual, 0 to 1; 0: run all iterations
     int history = 8;         ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
-    int contact_cg_iterations = 5;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
-                                    ///< contact stays out of the matrix
-    PotentialSettings potential;    ///< for steppers, which make the potential themselves
+    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
+                                     ///< contact stays out of the matrix
+    PotentialSettings potential;     ///< for steppers, which make the potential themselves
 };
 
 /// What one minimisation reached.

@@ -111,8 +111,9 @@ void QuasiNewtonMatrix::solve(const Points& b, ContactModel& contacts, int itera
     // P times the direction follows from the residuals, so that P itself is never multiplied.
     m_p_direction = m_residual;
     double power = dot(m_residual, m_preconditioned);
+    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
     out.setZero(b.rows(), 3);
-    for (int k = 0; power > 0.0; ++k) {
+    for (int k = 0; power > enough; ++k) {
         m_product = m_p_direction;
         contacts.add_product(m_direction, m_product);
         const double step = power / dot(m_direction, m_product);
