@@ -43,7 +43,7 @@ std::string compare_usage() {
            "  --fabric soft|real     soft cotton of 33 N/m, or cotton as measured, 5 kN/m\n"
            "  --solvers A,B,...      bullet, bullet-fine, bullet-K (K iterations), reference,\n"
            "                         quasi-newton-K, and networks: baseline, sampling, reduction,\n"
-           "                         fast, each with +K for K refinement iterations (default +2)\n"
+           "                         fast, each with +K for K refinement iterations (default +10)\n"
            "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"
            "  --reference-frames N   frames with references and one-step errors (default 30; 0: "
            "all)\n"
@@ -58,8 +58,8 @@ std::string compare_usage() {
 
 CompareOptions parse_compare_options(const std::vector<std::string>& arguments) {
     CompareOptions options;
-    options.solvers = {"bullet",   "bullet-fine", "reference", "quasi-newton-3",
-                       "baseline", "fast",        "fast+0"};
+    options.solvers = {"bullet",          "bullet-fine", "reference", "quasi-newton-3",
+                       "quasi-newton-10", "baseline",    "fast",      "fast+0"};
     std::map<std::string, std::string*> texts = {
         {"--garment", &options.garment}, {"--motion", &options.motion},
         {"--fabric", &options.fabric},   {"--weights", &options.weights},

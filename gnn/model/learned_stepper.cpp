@@ -47,7 +47,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_builder(garment, m_graph, m_predictor->config().features) {
     if (settings.refine < 0 || settings.refine > 100)
         throw ArgumentError("refine", std::to_string(settings.refine) + " is outside 0 to 100",
-                            "use 2, or 0 for the network alone");
+                            "use 10, or 0 for the network alone");
 }
 
 std::string LearnedStepper::name() const {

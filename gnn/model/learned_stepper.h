@@ -11,8 +11,8 @@
 namespace cloth {
 
 struct LearnedStepperSettings {
-    int refine = 2;  ///< quasi-Newton iterations after the network, 0 to 100; 0: the paper's
-                     ///< method, which may blow up in long motions
+    int refine = 10;  ///< quasi-Newton iterations after the network, 0 to 100; 0: the paper's
+                      ///< method, which blows up in long motions; 2 lose a T-shirt in a jump
     double safety_distance = 0.0;  ///< vertices that end nearer to an obstacle are pushed out to
                                    ///< this distance (m), 0 to 1e-3
     PotentialSettings potential;

@@ -8,7 +8,7 @@ TEST(CompareOptions, DefaultsCompareTheShippedSolvers) {
     const CompareOptions options = parse_compare_options({});
     EXPECT_EQ(options.garment, "tshirt");
     EXPECT_EQ(options.frames, 90);
-    EXPECT_EQ(options.solvers.size(), 7u);
+    EXPECT_EQ(options.solvers.size(), 8u);
 }
 
 TEST(CompareOptions, AWorkerGetsWhatItsParentWasTold) {

@@ -65,8 +65,10 @@ TEST(SamplingSchedule, DealsDifferentEdgesOfTheRightVertex) {
             const int real = static_cast<int>(
                 std::count_if(dealt.begin(), dealt.end(), [](int e) { return e >= 0; }));
             EXPECT_EQ(real, std::min(4, degree(graph, i)));
-            for (int e : dealt)
-                if (e >= 0) EXPECT_EQ(graph.receivers[static_cast<size_t>(e)], i);
+            for (int e : dealt) {
+                if (e < 0) continue;
+                EXPECT_EQ(graph.receivers[static_cast<size_t>(e)], i);
+            }
         }
 }
 

@@ -119,7 +119,9 @@ TEST(Features, WorldRowsExistWithinTheRadiusOnly) {
         const double distance = (scene.state.x.row(i).transpose() - centre).norm() - 0.1;
         EXPECT_EQ(f.world_mask[i] == 1.0f, distance < 0.03) << "vertex " << i;
         inside += f.world_mask[i] == 1.0f;
-        if (f.world_mask[i] == 0.0f) EXPECT_EQ(f.world.row(i).norm(), 0.0f);
+        if (f.world_mask[i] == 0.0f) {
+            EXPECT_EQ(f.world.row(i).norm(), 0.0f);
+        }
     }
     EXPECT_GT(inside, 5);
     EXPECT_LT(inside, f.world_mask.size());
