@@ -98,8 +98,8 @@ TEST_P(TshirtRegression, KeepsItsFigures) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, TshirtRegression, ::testing::ValuesIn(solver_names),
-                         [](const auto& info) {
-                             std::string name = info.param;
+                         [](const auto& solver) {
+                             std::string name = solver.param;
                              for (char& c : name)
                                  if (c == '-' || c == '+') c = '_';
                              return name;
