@@ -1,0 +1,39 @@
+// The contract of all steppers, kept by the learned ones: the engine with the committed weights.
+
+#include "data/paths.h"
+#include "gnn/model/engine.h"
+#include "gnn/model/learned_stepper.h"
+#include "tests/gnn/stepper_contract.h"
+
+namespace cloth::testing {
+namespace {
+
+StepperCase learned(const std::string& variant, int refine) {
+    const auto make = [variant, refine](const Garment& garment) {
+        const auto weights = std::make_shared<const Weights>(
+            Weights::load(asset_path("weights/" + variant + ".safetensors")));
+        LearnedStepperSettings settings;
+        settings.refine = refine;
+        return std::make_unique<LearnedStepper>(garment, std::make_shared<Engine>(weights),
+                                                settings);
+    };
+    const std::string learnt = "the network only comes near it, and refinement is bounded";
+    std::map<Promise, std::string> exceptions = {
+        {Promise::free_fall, learnt},
+        {Promise::rest, learnt},
+        {Promise::yaw_equivariance, "learned from turned scenes, not built in"},
+        {Promise::any_time_step, "the network knows one time step"}};
+    if (ModelConfig::variant_named(variant).sampled_edges > 0)
+        exceptions[Promise::permutation_invariance] =
+            "the sampling schedule follows the order of vertices";
+    // the features are single precision
+    return {variant + std::to_string(refine), make, 1e-4, exceptions};
+}
+
+INSTANTIATE_TEST_SUITE_P(Learned, StepperContract,
+                         ::testing::Values(learned("fast", 0), learned("fast", 10),
+                                           learned("baseline", 10)),
+                         case_name);
+
+}  // namespace
+}  // namespace cloth::testing
