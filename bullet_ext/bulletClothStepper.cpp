@@ -5,8 +5,10 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "bullet_ext/bulletHulls.h"
@@ -16,6 +18,7 @@ namespace cloth {
 
 namespace {
 
+constexpr double kFarthest = 1e6;    ///< floats are too coarse for cloth out there (m)
 constexpr double kExploded = 100.0;  ///< cloth that moved farther in one step has exploded (m)
 
 void validate(const BulletClothSettings& settings) {
@@ -32,6 +35,44 @@ void validate(const BulletClothSettings& settings) {
     check("cloth.iterations", settings.cloth.iterations, 1, 1000);
     check("cloth.margin", settings.cloth.margin, 1e-4, 0.25);
 }
+
+bool isFinite(const Obstacle& o) {
+    return o.x0.allFinite() && o.x1.allFinite() && o.x0.rows() == o.x1.rows() &&
+           o.pose0.matrix().allFinite() && o.pose1.matrix().allFinite() &&
+           o.half_extents.allFinite() && std::isfinite(o.radius) && std::isfinite(o.friction);
+}
+
+bool isUsable(const Garment& garment, const Boundary& boundary, double dt,
+              const ClothState& state) {
+    const Eigen::Index count = garment.vertex_count();
+    const auto pins = static_cast<Eigen::Index>(garment.pins().size());
+    const Points& push = boundary.accelerations;
+    return std::isfinite(dt) && dt > 0.0 && state.x.rows() == count && state.v.rows() == count &&
+           state.x.allFinite() && state.v.allFinite() &&
+           state.x.cwiseAbs().maxCoeff() < kFarthest && boundary.gravity.allFinite() &&
+           boundary.pin_targets.rows() == pins && boundary.pin_targets.allFinite() &&
+           (push.size() == 0 || (push.rows() == count && push.allFinite())) &&
+           std::all_of(boundary.obstacles.begin(), boundary.obstacles.end(), isFinite);
+}
+
+bool sameBits(const Points& a, const Points& b) {
+    return a.rows() == b.rows() &&
+           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0;
+}
+
+/// Bullet's solver, given its contacts in an order that does not depend on what happened before.
+class OrderedSolver : public btDefaultSoftBodySolver {
+ public:
+    void solveConstraints(btScalar dt) override {
+        for (int i = 0; i < m_softBodySet.size(); ++i)
+            m_softBodySet[i]->m_rcontacts.quickSort(
+                [](const btSoftBody::RContact& a, const btSoftBody::RContact& b) {
+                    if (a.m_node != b.m_node) return a.m_node < b.m_node;
+                    return a.m_cti.m_colObj->getUserIndex() < b.m_cti.m_colObj->getUserIndex();
+                });
+        btDefaultSoftBodySolver::solveConstraints(dt);
+    }
+};
 
 }  // namespace
 
@@ -64,8 +105,38 @@ class BulletClothStepper::World {
         m_world.setGravity(toBullet(gravity));
         m_world.getWorldInfo().m_gravity = toBullet(gravity);
     }
-    void load(const ClothState& state) { loadState(state, *m_cloth); }
-    void store(ClothState& state) const { storeState(*m_cloth, state); }
+    /// A state that this world has made goes on with Bullet's own velocities.
+    void load(const ClothState& state) {
+        const bool goes_on = sameBits(state.x, m_last.x) && sameBits(state.v, m_last.v);
+        loadState(goes_on ? ClothState{state.x, m_node_velocities, state.time} : state, *m_cloth);
+    }
+    /// The state after dt seconds; pins land exactly.
+    ClothState stateAfter(const ClothState& before, const Boundary& boundary, double dt) {
+        ClothState state;
+        storeState(*m_cloth, state);
+        m_node_velocities = state.v;
+        for (size_t p = 0; p < m_garment.pins().size(); ++p)
+            state.x.row(m_garment.pins()[p]) =
+                boundary.pin_targets.row(static_cast<Eigen::Index>(p));
+        state.v = (state.x - before.x) / dt;
+        state.time = before.time + dt;
+        m_last = state;
+        return state;
+    }
+    /// Of the nodes that Bullet found in contact, the deepest below a hull (m).
+    double deepest() {
+        double depth = 0.0;
+        for (int i = 0; i < m_cloth->m_rcontacts.size(); ++i) {
+            const btSoftBody::RContact& contact = m_cloth->m_rcontacts[i];
+            const btCollisionObject& hull = *contact.m_cti.m_colObj;
+            btVector3 normal;
+            const btScalar distance = m_world.getWorldInfo().m_sparsesdf.Evaluate(
+                hull.getWorldTransform().invXform(contact.m_node->m_x), hull.getCollisionShape(),
+                normal, 0);
+            depth = std::max(depth, -static_cast<double>(distance));
+        }
+        return depth;
+    }
 
     void sendPins(const Points& targets, double dt) {
         const std::vector<int>& pins = m_garment.pins();
@@ -91,10 +162,12 @@ class BulletClothStepper::World {
     btCollisionDispatcher m_dispatcher;
     btDbvtBroadphase m_broadphase;
     btSequentialImpulseConstraintSolver m_rigid_solver;
-    btDefaultSoftBodySolver m_solver;
+    OrderedSolver m_solver;
     btSoftRigidDynamicsWorld m_world;
     std::unique_ptr<btSoftBody> m_cloth;
     BulletHulls m_hulls;
+    ClothState m_last;         ///< what stateAfter() returned last
+    Points m_node_velocities;  ///< |V| x 3 (m/s): Bullet's own at that time
 };
 
 BulletClothSettings BulletClothSettings::shipped(int iterations) {
@@ -123,17 +196,18 @@ BulletClothStepper::~BulletClothStepper() = default;
 
 StepReport BulletClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     StepReport report;
-    report.residual = report.max_penetration = std::numeric_limits<double>::quiet_NaN();
-    const auto count = m_garment.vertex_count();
-    report.finite =
-        dt > 0.0 && state.x.rows() == count && state.v.rows() == count && state.x.allFinite() &&
-        state.v.allFinite() &&
-        boundary.pin_targets.rows() == static_cast<long>(m_garment.pins().size()) &&
-        boundary.pin_targets.allFinite() &&
-        (boundary.accelerations.size() == 0 ||
-         (boundary.accelerations.rows() == count && boundary.accelerations.allFinite()));
+    report.residual = std::numeric_limits<double>::quiet_NaN();
+    report.finite = isUsable(m_garment, boundary, dt, state);
     if (!report.finite) return report;
     const auto start = std::chrono::steady_clock::now();
+    run(boundary, dt, state, report);
+    report.times.solve =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return report;
+}
+
+void BulletClothStepper::run(const Boundary& boundary, double dt, ClothState& state,
+                             StepReport& report) {
     if (!m_world) m_world = std::make_unique<World>(m_garment, m_settings);
     m_world->load(state);
     m_world->setGravity(boundary.gravity);
@@ -146,21 +220,16 @@ StepReport BulletClothStepper::step(const Boundary& boundary, double dt, ClothSt
         m_world->hulls().moveTo(static_cast<double>(s) / substeps);
         m_world->subStep(dt / substeps);
     }
-    ClothState next = state;
-    m_world->store(next);
-    for (size_t p = 0; p < m_garment.pins().size(); ++p)
-        next.x.row(m_garment.pins()[p]) = boundary.pin_targets.row(static_cast<Eigen::Index>(p));
-    next.time += dt;
     report.iterations = substeps * m_settings.cloth.iterations;
+    report.max_penetration = m_world->deepest();
+    ClothState next = m_world->stateAfter(state, boundary, dt);
     report.finite = next.x.allFinite() && next.v.allFinite() &&
+                    std::isfinite(report.max_penetration) &&
                     (next.x - state.x).cwiseAbs().maxCoeff() < kExploded;
     if (report.finite)
         state = std::move(next);
     else
         m_world.reset();  // numbers that are not finite have spread to Bullet's trees
-    report.times.solve =
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    return report;
 }
 
 }  // namespace cloth

@@ -38,10 +38,10 @@ struct BulletClothSettings {
 /// at t + dt. The segments belong to the first mesh obstacle that has their vertices; other meshes
 /// are cut into hulls at first sight. Primitives are Bullet's primitives, a plane is a large box.
 ///
-/// Not promised: state.v is the velocity at the end of the last sub-step, so that a ClothState is
-/// all of Bullet's state, and differs from (x_t - x_{t-1}) / dt; numbers are floats; the material
-/// is Bullet's (SoftBodySettings), the garment's fabric only gives the masses; max_penetration is
-/// not measured (NaN), hulls being no exact copy of the obstacle.
+/// Bullet's velocity at the end of the last sub-step is not (x_t - x_{t-1}) / dt: a state that is
+/// given back as it was returned goes on with Bullet's, any other state with its own. Numbers are
+/// floats; the material is Bullet's (SoftBodySettings), the fabric only gives the masses;
+/// max_penetration is the depth below the hulls, which are no exact copy of the obstacle.
 class BulletClothStepper : public Stepper {
  public:
     /// Keeps a reference to `garment`.
@@ -55,6 +55,8 @@ class BulletClothStepper : public Stepper {
 
  private:
     class World;
+
+    void run(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
 
     const Garment& m_garment;
     BulletClothSettings m_settings;

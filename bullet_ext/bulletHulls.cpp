@@ -166,6 +166,7 @@ void BulletHulls::addPiece(Piece piece, btSoftRigidDynamicsWorld& world) {
         btRigidBody::btRigidBodyConstructionInfo(0, nullptr, piece.shape.get()));
     piece.body->setCollisionFlags(btCollisionObject::CF_KINEMATIC_OBJECT);
     piece.body->setActivationState(DISABLE_DEACTIVATION);
+    piece.body->setUserIndex(static_cast<int>(m_pieces.size()));
     // Hulls of one body overlap: they meet cloth only.
     world.addRigidBody(piece.body.get(), btBroadphaseProxy::KinematicFilter,
                        btBroadphaseProxy::DefaultFilter);

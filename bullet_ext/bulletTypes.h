@@ -1,14 +1,14 @@
 #pragma once
 
-#include <LinearMath/btTransform.h>
-
-#include "data/boundary.h"
-
 #ifdef BT_USE_DOUBLE_PRECISION
 #error \
     "FastCloth is built against Bullet in single precision: compile without \
 BT_USE_DOUBLE_PRECISION and link bullet.pc (Debian), not bullet-float64.pc"
 #endif
+
+#include <LinearMath/btTransform.h>
+
+#include "data/boundary.h"
 
 namespace cloth {
 
