@@ -1,46 +1,59 @@
 #pragma once
 
-#include <memory>
 #include <string>
+#include <vector>
 
-#include "data/animated_body.h"
+#include "bullet_ext/bodySegments.h"
 #include "data/boundary.h"
 #include "data/cloth_state.h"
-#include "demos/compare/options.h"
 
 namespace cloth {
 
-/// What all solvers of a comparison are given: a garment on a moving body.
+/// What all solvers of a comparison are given: a garment, and the outside over time.
 ///
-/// The clock starts with the motion; before it lies the lead-in, in which the body moves from its
-/// rest pose into the motion's first pose and the garment settles.
+/// The clock starts with the first frame that is compared. Before it may lie a lead-in, in which
+/// the garment settles (see settle()).
 class ComparisonScene {
  public:
     static constexpr double frame_time = 1.0 / 30.0;  ///< (s)
 
-    /// @throws LoadError, ArgumentError, UsageError if the garment or the motion cannot be had
-    explicit ComparisonScene(const CompareOptions& options);
+    virtual ~ComparisonScene() = default;
+    ComparisonScene(const ComparisonScene&) = delete;
+    ComparisonScene& operator=(const ComparisonScene&) = delete;
 
-    const Garment& garment() const { return *m_garment; }
-    const AnimatedBody& body() const { return *m_body; }
-    int frames() const { return m_frames; }                      ///< of the motion
-    int reference_frames() const { return m_reference_frames; }  ///< with references
-    int lead_in_frames() const { return m_lead_in_frames; }
+    const Garment& garment() const { return m_garment; }
+    int frames() const { return m_frames; }                      ///< that solvers compute
+    int reference_frames() const { return m_reference_frames; }  ///< of them with references
 
-    /// The outside between two times (s) of the motion's clock; negative times lie in the lead-in.
-    Boundary boundary(double t0, double t1) const;
+    /// The outside between two times (s); negative times lie in the lead-in.
+    virtual Boundary boundary(double t0, double t1) const = 0;
+    Boundary frame_boundary(int frame) const {
+        return boundary(frame * frame_time, (frame + 1) * frame_time);
+    }
 
-    /// Skin of the body at a time of the motion's clock (|V| x 3, m).
-    Points skin(double time) const;
+    /// Frames in which the garment settles from its rest pose; 0: it starts in its rest pose.
+    virtual int lead_in_frames() const { return 0; }
+
+    /// Hulls of the animated body for Bullet's own solver; none: Bullet has the obstacles' shapes.
+    virtual std::vector<BodySegment> segments() const { return {}; }
+
+    /// Why a garment at x (|V| x 3, m) at the end of the step does not belong to the scene any
+    /// more, such as "slid off the body"; empty: it does.
+    virtual std::string loss(const Boundary&, const Points& /*x*/) const { return {}; }
+
+ protected:
+    explicit ComparisonScene(Garment garment) : m_garment(std::move(garment)) {}
+
+    /// @param reference_frames  at most `frames`
+    void set_length(int frames, int reference_frames) {
+        m_frames = frames;
+        m_reference_frames = reference_frames;
+    }
 
  private:
-    std::unique_ptr<Garment> m_garment;
-    std::unique_ptr<AnimatedBody> m_body;
+    Garment m_garment;
     int m_frames = 0;
     int m_reference_frames = 0;
-    int m_lead_in_frames = 30;
 };
-
-Fabric fabric_named(const std::string& name);
 
 }  // namespace cloth

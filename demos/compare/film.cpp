@@ -47,15 +47,14 @@ std::string caption(const FilmPanel& panel, size_t frame) {
 
 class FilmStudio {
  public:
-    FilmStudio(const ComparisonScene& scene)
+    FilmStudio(const BodyScene& scene)
         : m_scene(scene),
           m_renderer(settings()),
           m_tracker(FramingSettings{}, static_cast<double>(panel_width) / panel_height),
           m_cloth_faces(std::make_shared<Faces>(scene.garment().rest().faces)) {}
 
     Image draw(const std::vector<FilmPanel>& panels, size_t frame) {
-        const Points skin =
-            m_scene.skin(static_cast<double>(frame + 1) * ComparisonScene::frame_time);
+        const Points skin = m_scene.skin(static_cast<double>(frame + 1) * BodyScene::frame_time);
         const Camera camera = m_tracker.follow(skin);
         std::vector<Image> pictures;
         for (size_t k = 0; k < panels.size(); ++k)
@@ -100,7 +99,7 @@ class FilmStudio {
         return cloth;
     }
 
-    const ComparisonScene& m_scene;
+    const BodyScene& m_scene;
     OsmesaRenderer m_renderer;
     FigureTracker m_tracker;
     std::shared_ptr<const Faces> m_cloth_faces;
@@ -108,9 +107,8 @@ class FilmStudio {
 
 }  // namespace
 
-std::vector<std::string> make_film(const ComparisonScene& scene,
-                                   const std::vector<FilmPanel>& panels, const std::string& out,
-                                   const ProgressFunction& progress) {
+std::vector<std::string> make_film(const BodyScene& scene, const std::vector<FilmPanel>& panels,
+                                   const std::string& out, const ProgressFunction& progress) {
     FilmStudio studio(scene);
     std::unique_ptr<VideoWriter> video;
     std::vector<std::string> key_frames;

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "demos/compare/comparison_scene.h"
-#include "demos/compare/measure.h"
+#include "demos/compare/body_scene.h"
+#include "demos/compare/references.h"
 #include "demos/compare/trajectory.h"
 
 namespace cloth {
@@ -20,8 +20,7 @@ struct FilmPanel {
 /// Draws all panels side by side, each with its solver's name, milliseconds per frame and current
 /// error, into `out`/comparison.mp4 and some key frames `out`/key_frame_N.png.
 /// @return the paths of the key frames
-std::vector<std::string> make_film(const ComparisonScene& scene,
-                                   const std::vector<FilmPanel>& panels, const std::string& out,
-                                   const ProgressFunction& progress);
+std::vector<std::string> make_film(const BodyScene& scene, const std::vector<FilmPanel>& panels,
+                                   const std::string& out, const ProgressFunction& progress);
 
 }  // namespace cloth

@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "data/errors.h"
+#include "demos/compare/body_scene.h"
 #include "demos/compare/film.h"
 #include "demos/compare/machine.h"
 #include "demos/compare/measure.h"
@@ -64,7 +65,7 @@ void save(const CompareOptions& options, const std::string& name, const Measurem
 
 /// What one child process does: one of the stages that others need, or one solver.
 void run_worker(const CompareOptions& options) {
-    const ComparisonScene scene(options);
+    const BodyScene scene(scene_settings(options));
     Progress line;
     const ProgressFunction progress = [&line](int done, int all, const std::string& what) {
         line.update(done, all, what);
@@ -78,7 +79,7 @@ void run_worker(const CompareOptions& options) {
         save_trajectory(work_file(options, "fine.traj"), fine_reference(scene, start, progress));
         return;
     }
-    const auto make = [&] { return make_solver(options.worker, scene, options); };
+    const auto make = [&] { return make_solver(options.worker, scene, solver_settings(options)); };
     const Trajectory fine = load_trajectory(work_file(options, "fine.traj"));
     if (options.worker == "reference") {
         save(options, options.worker, measure_reference(scene, start, fine, make, progress));
@@ -110,7 +111,7 @@ void run_stage(const CompareOptions& options, const std::string& stage) {
         throw std::runtime_error("the process for " + stage + " failed; see above");
 }
 
-json scene_json(const CompareOptions& options, const ComparisonScene& scene) {
+json scene_json(const CompareOptions& options, const BodyScene& scene) {
     return {{"garment", options.garment},
             {"vertices", scene.garment().vertex_count()},
             {"faces", scene.garment().face_count()},
@@ -129,7 +130,7 @@ void compare(const CompareOptions& options) {
     for (const char* stage : {"settle", "fine", "reference"}) run_stage(options, stage);
     for (const std::string& solver : options.solvers) run_stage(options, solver);
 
-    const ComparisonScene scene(options);
+    const BodyScene scene(scene_settings(options));
     json report = {{"scene", scene_json(options, scene)}, {"solvers", json::array()}};
     std::vector<Trajectory> trajectories;
     for (const std::string& solver : options.solvers) {

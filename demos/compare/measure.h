@@ -1,31 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
-#include "demos/compare/comparison_scene.h"
-#include "demos/compare/trajectory.h"
+#include "demos/compare/references.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
-
-/// The trajectories that errors are measured against.
-struct References {
-    Trajectory coarse;  ///< converged at the frame's time step: states 0 .. reference_frames
-    Trajectory fine;    ///< the same energy converged at 1/240 s, at the same times
-};
-
-/// Called after each step of a long computation: done, of all, what.
-using ProgressFunction = std::function<void(int, int, const std::string&)>;
-
-/// The state in which all solvers start: the garment settled on the body during the lead-in.
-ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress);
-
-/// The fine reference: eight converged steps of 1/240 s per frame.
-Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
-                          const ProgressFunction& progress);
 
 /// One solver's figures (an entry of report.json's `solvers`), per-frame series included under
 /// "series", and its trajectory.
@@ -33,6 +16,18 @@ struct Measurement {
     nlohmann::json json;
     Trajectory trajectory;
 };
+
+/// A solver, ready to be timed, and the memory (MB) that it took.
+struct WarmStepper {
+    std::unique_ptr<Stepper> stepper;
+    double memory_mb = 0.0;
+};
+
+/// Makes a solver and lets it step twice: first steps allocate and fill caches, which is not what a
+/// frame costs. The memory is the highest resident memory of this process meanwhile, less that
+/// before.
+WarmStepper make_warm(const ComparisonScene& scene, const ClothState& start,
+                      const std::function<std::unique_ptr<Stepper>()>& make);
 
 /// @param make  makes the solver; memory is counted from before this call
 Measurement measure(const std::string& name, const ComparisonScene& scene, const ClothState& start,

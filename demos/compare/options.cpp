@@ -1,40 +1,16 @@
 #include "demos/compare/options.h"
 
 #include <map>
-#include <sstream>
 
 namespace cloth {
-namespace {
-
-std::vector<std::string> split(const std::string& list) {
-    std::vector<std::string> items;
-    std::stringstream stream(list);
-    for (std::string item; std::getline(stream, item, ',');)
-        if (!item.empty()) items.push_back(item);
-    return items;
+BodySceneSettings scene_settings(const CompareOptions& options) {
+    return {options.garment, options.fabric, options.motion, options.frames,
+            options.reference_frames};
 }
 
-std::string join(const std::vector<std::string>& items) {
-    std::string list;
-    for (const std::string& item : items) list += (list.empty() ? "" : ",") + item;
-    return list;
+SolverSettings solver_settings(const CompareOptions& options) {
+    return {options.weights, options.threads, nullptr};
 }
-
-int whole_number(const std::string& option, const std::string& text, int lowest, int highest) {
-    size_t used = 0;
-    int value = 0;
-    try {
-        value = std::stoi(text, &used);
-    } catch (const std::exception&) {
-        used = 0;
-    }
-    if (used != text.size() || text.empty() || value < lowest || value > highest)
-        throw UsageError(option + " " + text + ": give a whole number from " +
-                         std::to_string(lowest) + " to " + std::to_string(highest));
-    return value;
-}
-
-}  // namespace
 
 std::string compare_usage() {
     return "compare: solvers of the same cloth on the same moving body, side by side\n"
@@ -42,8 +18,9 @@ std::string compare_usage() {
            "  --motion NAME          01_01, 01_03, Boxing_Toes, a clip's number or a BVH file\n"
            "  --fabric soft|real     soft cotton of 33 N/m, or cotton as measured, 5 kN/m\n"
            "  --solvers A,B,...      bullet, bullet-fine, bullet-K (K iterations), reference,\n"
-           "                         quasi-newton-K, and networks: baseline, sampling, reduction,\n"
-           "                         fast, each with +K for K refinement iterations (default +10)\n"
+           "                         quasi-newton-K, and networks: baseline,\n"
+           "                         sampling, reduction, fast, each with +K for K refinement\n"
+           "                         iterations (default +10)\n"
            "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"
            "  --reference-frames N   frames with references and one-step errors (default 30; 0: "
            "all)\n"
@@ -76,7 +53,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         if (texts.count(option))
             *texts[option] = value;
         else if (option == "--solvers")
-            options.solvers = split(value);
+            options.solvers = split_list(value);
         else if (option == "--frames")
             options.frames = whole_number(option, value, 0, 100000);
         else if (option == "--reference-frames")
@@ -103,7 +80,7 @@ std::vector<std::string> worker_arguments(const CompareOptions& options,
                                           "--out",
                                           options.out,
                                           "--solvers",
-                                          join(options.solvers),
+                                          join_list(options.solvers),
                                           "--frames",
                                           std::to_string(options.frames),
                                           "--reference-frames",

@@ -1,16 +1,13 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-namespace cloth {
+#include "demos/compare/arguments.h"
+#include "demos/compare/body_scene.h"
+#include "demos/compare/solver_factory.h"
 
-/// The command line is wrong, or asks for help: the message is what the user shall read.
-class UsageError : public std::runtime_error {
- public:
-    using std::runtime_error::runtime_error;
-};
+namespace cloth {
 
 struct CompareOptions {
     std::string garment = "tshirt";
@@ -25,6 +22,9 @@ struct CompareOptions {
     bool video = true;
     std::string worker;  ///< internal: measure only this solver, in this process
 };
+
+BodySceneSettings scene_settings(const CompareOptions& options);
+SolverSettings solver_settings(const CompareOptions& options);
 
 std::string compare_usage();
 

@@ -1,4 +1,6 @@
-#include "demos/compare/measure.h"
+#include "demos/compare/references.h"
+
+#include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
 
 namespace cloth {
@@ -21,6 +23,19 @@ ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress
     }
     state.time = 0.0;
     return state;
+}
+
+Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
+                            const ProgressFunction& progress) {
+    ImplicitStepper stepper(scene.garment());
+    Trajectory trajectory = {start};
+    for (int frame = 0; frame < scene.reference_frames(); ++frame) {
+        ClothState state = trajectory.back();
+        stepper.step(scene.frame_boundary(frame), ComparisonScene::frame_time, state);
+        trajectory.push_back(std::move(state));
+        progress(frame + 1, scene.reference_frames(), "reference, 1/30 s");
+    }
+    return trajectory;
 }
 
 Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,

@@ -1,10 +1,12 @@
 #include "demos/compare/solver_factory.h"
 
+#include <algorithm>
+#include <filesystem>
 #include <optional>
 
-#include "bullet_ext/bodySegments.h"
 #include "bullet_ext/bulletClothStepper.h"
 #include "data/paths.h"
+#include "demos/compare/arguments.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/learned_stepper.h"
 #include "gnn/physics/implicit_stepper.h"
@@ -13,63 +15,113 @@
 namespace cloth {
 namespace {
 
+bool starts_with(const std::string& name, const std::string& prefix) {
+    return name.rfind(prefix, 0) == 0;
+}
+
 /// The K of "PREFIX" + K, or nothing.
 std::optional<int> number_after(const std::string& name, const std::string& prefix) {
-    if (name.rfind(prefix, 0) != 0 || name.size() == prefix.size()) return std::nullopt;
+    if (!starts_with(name, prefix) || name.size() == prefix.size()) return std::nullopt;
     const std::string digits = name.substr(prefix.size());
     if (digits.size() > 4 || digits.find_first_not_of("0123456789") != std::string::npos)
         return std::nullopt;
     return std::stoi(digits);
 }
 
-std::unique_ptr<Stepper> make_bullet(const std::string& name, const ComparisonScene& scene) {
-    BulletClothSettings settings = BulletClothSettings::shipped();
-    if (const auto iterations = number_after(name, "bullet-"))
-        settings = BulletClothSettings::shipped(*iterations);
-    if (name == "bullet-fine") settings = BulletClothSettings::fine();
-    const Body& body = scene.body().body();
-    return std::make_unique<BulletClothStepper>(
-        scene.garment(), settings, segment_body(body.rest_mesh(), body.dominant_joint()));
+/// The same for names that must have one in a range.
+int iterations_of(const std::string& name, const std::string& prefix, int lowest, int highest) {
+    const std::optional<int> number = number_after(name, prefix);
+    if (!number || *number < lowest || *number > highest)
+        throw UsageError("solver " + name + ": write " + prefix + "K with K from " +
+                         std::to_string(lowest) + " to " + std::to_string(highest));
+    return *number;
+}
+
+/// Bullet with K iterations and S sub-steps of a frame. The margin is the one that was found to
+/// hold a T-shirt: 10 mm with the shipped sub-steps, 4 mm with the fine ones.
+BulletClothSettings bullet_settings(const std::string& name) {
+    if (name == "bullet") return BulletClothSettings::shipped();
+    if (name == "bullet-fine") return BulletClothSettings::fine();
+    const size_t cross = name.find('x');
+    if (cross == std::string::npos)
+        return BulletClothSettings::shipped(iterations_of(name, "bullet-", 2, 100));
+    const std::string first = name.substr(0, cross);
+    const int iterations = iterations_of(first, "bullet-", 2, 100);
+    const int substeps = iterations_of(name, first + "x", 1, 64);
+    BulletClothSettings settings =
+        substeps < 8 ? BulletClothSettings::shipped() : BulletClothSettings::fine();
+    settings.name = name;
+    settings.cloth.iterations = iterations;
+    settings.substep_dt = ComparisonScene::frame_time / substeps;
+    return settings;
+}
+
+std::unique_ptr<Stepper> make_newton(const std::string& name, const ComparisonScene& scene) {
+    ImplicitSettings settings;
+    settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
+    return std::make_unique<ImplicitStepper>(scene.garment(), settings);
+}
+
+std::unique_ptr<Stepper> make_quasi_newton(const std::string& name, const ComparisonScene& scene) {
+    QuasiNewtonSettings settings;
+    settings.iterations = iterations_of(name, "quasi-newton-", 0, 1000);
+    return std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
+}
+
+std::string weights_folder(const std::string& folder) {
+    return folder.empty() ? asset_path("weights") : folder;
 }
 
 std::unique_ptr<Stepper> make_network(const std::string& name, const ComparisonScene& scene,
-                                      const CompareOptions& options) {
-    const size_t plus = name.find('+');
-    const std::string variant = name.substr(0, plus);
-    LearnedStepperSettings settings;
-    if (plus != std::string::npos) {
-        const auto refine = number_after(name, variant + "+");
-        if (!refine) throw UsageError("solver " + name + ": write NAME+K, such as fast+2");
-        settings.refine = *refine;
-    }
-    const std::string file = options.weights.empty()
-                                 ? asset_path("weights/" + variant + ".safetensors")
-                                 : options.weights + "/" + variant + ".safetensors";
-    auto weights = std::make_shared<const Weights>(Weights::load(file));
-    return std::make_unique<LearnedStepper>(
-        scene.garment(), std::make_shared<Engine>(weights, EngineSettings{options.threads}),
-        settings);
+                                      const SolverSettings& settings) {
+    const bool torch = starts_with(name, "torch-");
+    const std::string network = torch ? name.substr(6) : name;
+    const std::string variant = network.substr(0, network.find('+'));
+    LearnedStepperSettings learned;
+    if (variant != network) learned.refine = iterations_of(network, variant + "+", 0, 100);
+    const auto weights =
+        std::make_shared<const Weights>(Weights::load(weights_file(variant, settings.weights)));
+    if (torch && !settings.torch)
+        throw UsageError("solver " + name + ": this program is built without LibTorch");
+    std::shared_ptr<Predictor> predictor;
+    if (torch)
+        predictor = settings.torch(*weights);
+    else
+        predictor = std::make_shared<Engine>(weights, EngineSettings{settings.threads});
+    return std::make_unique<LearnedStepper>(scene.garment(), std::move(predictor), learned);
 }
 
 }  // namespace
 
+std::vector<std::string> networks_in(const std::string& folder) {
+    std::vector<std::string> names;
+    std::error_code unreadable;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(weights_folder(folder), unreadable))
+        if (entry.path().extension() == ".safetensors") names.push_back(entry.path().stem());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string weights_file(const std::string& variant, const std::string& folder) {
+    const std::string file = weights_folder(folder) + "/" + variant + ".safetensors";
+    if (std::filesystem::exists(file)) return file;
+    throw UsageError(
+        "solver " + variant +
+        ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
+        "quasi-newton-K or a network of " +
+        weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") + "), NAME or NAME+K");
+}
+
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
-                                     const CompareOptions& options) {
-    if (name.rfind("bullet", 0) == 0) {
-        const bool known =
-            name == "bullet" || name == "bullet-fine" || number_after(name, "bullet-").has_value();
-        if (!known) throw UsageError("solver " + name + ": choose bullet, bullet-fine or bullet-K");
-        return make_bullet(name, scene);
-    }
+                                     const SolverSettings& settings) {
+    if (starts_with(name, "bullet"))
+        return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
+                                                    scene.segments());
     if (name == "reference") return std::make_unique<ImplicitStepper>(scene.garment());
-    if (name.rfind("quasi-newton", 0) == 0) {
-        const auto iterations = number_after(name, "quasi-newton-");
-        if (!iterations) throw UsageError("solver " + name + ": write quasi-newton-K");
-        QuasiNewtonSettings settings;
-        settings.iterations = *iterations;
-        return std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
-    }
-    return make_network(name, scene, options);
+    if (starts_with(name, "newton")) return make_newton(name, scene);
+    if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
+    return make_network(name, scene, settings);
 }
 
 }  // namespace cloth

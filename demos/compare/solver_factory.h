@@ -1,17 +1,48 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "demos/compare/comparison_scene.h"
+#include "gnn/model/predictor.h"
+#include "gnn/model/weights.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
 
-/// Makes the solver called `name` for the scene's garment: bullet, bullet-fine, bullet-K,
-/// reference, quasi-newton-K, or a network NAME or NAME+K whose weights lie in the options' folder.
-/// @throws UsageError for an unknown name, LoadError for weights that are missing or broken
+/// Evaluates trained weights with LibTorch.
+using TorchMaker = std::function<std::shared_ptr<Predictor>(const Weights&)>;
+
+struct SolverSettings {
+    std::string weights;         ///< folder of trained weights; empty: the committed ones
+    int threads = 0;             ///< of the engine; 0: all that OpenMP gives
+    TorchMaker torch = nullptr;  ///< empty: LibTorch is not built in
+};
+
+/// Makes the solver called `name` for the scene's garment:
+///
+/// | name               | is                                                            |
+/// |--------------------|---------------------------------------------------------------|
+/// | bullet             | Bullet's own, 10 iterations, 2 sub-steps per frame            |
+/// | bullet-fine        | 5 iterations, 8 sub-steps                                     |
+/// | bullet-K           | K iterations, 2 sub-steps                                     |
+/// | bullet-KxS         | K iterations, S sub-steps                                     |
+/// | reference          | Newton's method, converged                                    |
+/// | newton-K           | K iterations of it                                            |
+/// | quasi-newton-K     | K quasi-Newton iterations                                     |
+/// | VARIANT[+K]        | the network VARIANT.safetensors and K quasi-Newton iterations |
+/// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
+///
+/// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
-                                     const CompareOptions& options);
+                                     const SolverSettings& settings);
+
+/// The networks whose weights lie in the folder (empty: the committed ones), in alphabetical order.
+std::vector<std::string> networks_in(const std::string& folder);
+
+/// The file of a network's weights. @throws UsageError naming the networks there are
+std::string weights_file(const std::string& variant, const std::string& folder);
 
 }  // namespace cloth

@@ -30,4 +30,11 @@ double mean(const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+double mean_of_known(const std::vector<double>& values) {
+    std::vector<double> known;
+    for (double value : values)
+        if (!std::isnan(value)) known.push_back(value);
+    return mean(known);
+}
+
 }  // namespace cloth

@@ -9,5 +9,7 @@ double quantile(std::vector<double> values, double part);
 
 double median(const std::vector<double>& values);
 double mean(const std::vector<double>& values);  ///< NaN if there are none
+/// Mean of those that are not NaN.
+double mean_of_known(const std::vector<double>& values);
 
 }  // namespace cloth

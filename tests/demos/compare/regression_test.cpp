@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "demos/compare/measure.h"
+#include "demos/compare/options.h"
 #include "demos/compare/solver_factory.h"
 
 using namespace cloth;
@@ -33,20 +34,21 @@ CompareOptions short_rollout() {
 
 /// The scene, the settled start and the reference, made once for all solvers.
 struct Fixture {
-    Fixture() : options(short_rollout()), scene(options) {
+    Fixture() : options(short_rollout()), scene(scene_settings(options)) {
         const auto quiet = [](int, int, const std::string&) {};
         start = settle(scene, quiet);
         references.coarse =
             measure_reference(
-                scene, start, {}, [&] { return make_solver("reference", scene, options); }, quiet)
+                scene, start, {},
+                [&] { return make_solver("reference", scene, solver_settings(options)); }, quiet)
                 .trajectory;
     }
 
     json figures(const std::string& solver) const {
         const auto quiet = [](int, int, const std::string&) {};
         const Measurement m = measure(
-            solver, scene, start, references, [&] { return make_solver(solver, scene, options); },
-            quiet);
+            solver, scene, start, references,
+            [&] { return make_solver(solver, scene, solver_settings(options)); }, quiet);
         const json& rollout = m.json["rollout"];
         return {{"finite", m.json["finite"]},
                 {"gap", m.json["one_step"]["gap"]["median"]},
@@ -57,7 +59,7 @@ struct Fixture {
     }
 
     CompareOptions options;
-    ComparisonScene scene;
+    BodyScene scene;
     ClothState start;
     References references;
 };

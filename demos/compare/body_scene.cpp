@@ -1,0 +1,58 @@
+#include "demos/compare/body_scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/mesh_io.h"
+#include "data/paths.h"
+#include "demos/compare/arguments.h"
+
+namespace cloth {
+
+Fabric fabric_named(const std::string& name) {
+    if (name == "soft") return Fabric::soft_cotton();
+    if (name == "real") return Fabric::real_cotton();
+    throw UsageError("fabric " + name + ": choose soft or real");
+}
+
+static Garment load_garment(const BodySceneSettings& settings) {
+    const TriMesh rest = load_mesh(asset_path("garments/" + settings.garment + ".obj"));
+    return {settings.garment, rest, fabric_named(settings.fabric)};
+}
+
+BodyScene::BodyScene(const BodySceneSettings& settings) : ComparisonScene(load_garment(settings)) {
+    const auto body = std::make_shared<const Body>(Body::load_default());
+    m_body = std::make_unique<AnimatedBody>(body, load_motion_by_name(settings.motion));
+    m_lead_in_frames = static_cast<int>(std::lround(m_body->settings().lead_in / frame_time));
+    const int available = m_body->frame_count(frame_time) - 1 - m_lead_in_frames;
+    if (available < 1)
+        throw UsageError("motion " + settings.motion + ": is shorter than one frame");
+    const int frames = settings.frames == 0 ? available : std::min(settings.frames, available);
+    const int references = settings.reference_frames == 0 ? frames : settings.reference_frames;
+    set_length(frames, std::min(references, frames));
+}
+
+Boundary BodyScene::boundary(double t0, double t1) const {
+    const double lead_in = m_lead_in_frames * frame_time;
+    Boundary boundary;
+    boundary.obstacles.push_back(m_body->obstacle(lead_in + t0, lead_in + t1));
+    return boundary;
+}
+
+Points BodyScene::skin(double time) const {
+    return m_body->vertices(m_lead_in_frames * frame_time + time);
+}
+
+std::vector<BodySegment> BodyScene::segments() const {
+    const Body& body = m_body->body();
+    return segment_body(body.rest_mesh(), body.dominant_joint());
+}
+
+std::string BodyScene::loss(const Boundary& boundary, const Points& x) const {
+    const double height = x.col(1).mean() - garment().rest().vertices.col(1).mean();
+    const double body_height =
+        boundary.obstacles[0].x1.col(1).mean() - m_body->body().rest().col(1).mean();
+    return std::abs(height - body_height) > 0.4 ? "slid off the body" : "";
+}
+
+}  // namespace cloth

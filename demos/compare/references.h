@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "demos/compare/comparison_scene.h"
+#include "demos/compare/trajectory.h"
+
+namespace cloth {
+
+/// The trajectories that errors are measured against.
+struct References {
+    Trajectory coarse;  ///< converged at the frame's time step: states 0 .. reference_frames
+    Trajectory fine;    ///< the same energy converged at 1/240 s, at the same times
+};
+
+/// Called after each step of a long computation: done, of all, what.
+using ProgressFunction = std::function<void(int, int, const std::string&)>;
+
+/// The state in which all solvers start: the garment after the lead-in.
+ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress);
+
+/// Converged steps of the frame's length.
+Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
+                            const ProgressFunction& progress);
+
+/// The fine reference: eight converged steps of 1/240 s per frame.
+Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
+                          const ProgressFunction& progress);
+
+}  // namespace cloth
