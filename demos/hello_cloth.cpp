@@ -13,7 +13,7 @@
 
 int main() {
     // The network, and how to make a stepper for a piece of cloth.
-    auto weights = std::make_shared<const cloth::Weights>(
+    auto weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/fast.safetensors")));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
         return std::make_unique<cloth::LearnedStepper>(garment,

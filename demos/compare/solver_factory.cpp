@@ -79,13 +79,12 @@ std::unique_ptr<Stepper> make_network(const std::string& name, const ComparisonS
     const std::string variant = network.substr(0, network.find('+'));
     LearnedStepperSettings learned;
     if (variant != network) learned.refine = iterations_of(network, variant + "+", 0, 100);
-    const auto weights =
-        std::make_shared<const Weights>(Weights::load(weights_file(variant, settings.weights)));
+    const Weights weights = Weights::load(weights_file(variant, settings.weights));
     if (torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
     std::shared_ptr<Predictor> predictor;
     if (torch)
-        predictor = settings.torch(*weights);
+        predictor = settings.torch(weights);
     else
         predictor = std::make_shared<Engine>(weights, EngineSettings{settings.threads});
     return std::make_unique<LearnedStepper>(scene.garment(), std::move(predictor), learned);

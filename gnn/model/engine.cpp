@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "data/errors.h"
-#include "gnn/model/message_block.h"
+#include "gnn/model/engine_workspace.h"
 
 // The vertices are cut into groups. Within a message step everything that a group writes belongs to
 // its own vertices: its incoming edges, its world edges, its node latents. The only thing it reads
@@ -17,432 +17,330 @@
 // always taken in the same order.
 
 namespace cloth {
+
+struct Engine::Topology : EngineTopology {
+    using EngineTopology::EngineTopology;
+};
+
+struct Engine::Workspace : EngineWorkspace {
+    using EngineWorkspace::EngineWorkspace;
+};
+
 namespace {
 
-constexpr int group_size = 192;  // vertices: edge latents of a group stay in the second-level cache
-
-int padded(int columns) {
-    return (columns + 15) / 16 * 16;
+void normalise_row(const MatrixF& features, Eigen::Index from,
+                   const EngineWeights::Statistics& statistics, float* to) {
+    for (Eigen::Index c = 0; c < features.cols(); ++c)
+        to[c] = (features(from, c) - statistics.mean[c]) * statistics.inverse_deviation[c];
 }
 
-/// Weights of one perceptron as the message block wants them.
-struct Mlp {
-    MessageBlockWeights block;
-    std::vector<std::vector<float>> own;  // encoder inputs are filled up to a multiple of 16
-};
+/// Rows [first, last) of the features, or those of a list, normalised and filled up with zeros.
+const float* read_rows(const MatrixF& features, const EngineWeights::Encoder& encoder,
+                       const int* list, int first, int last, AlignedBuffer& to) {
+    const int wide = encoder.block.in[0], columns = static_cast<int>(features.cols());
+    for (int r = first; r < last; ++r) {
+        float* row = to.data() + static_cast<size_t>(r - first) * static_cast<size_t>(wide);
+        normalise_row(features, list ? list[r] : r, encoder.statistics, row);
+        std::fill(row + columns, row + wide, 0.0f);
+    }
+    return to.data();
+}
 
-/// Edge rows of one message step, sorted by receiver.
-struct EdgeTable {
-    std::vector<int> edges, receivers, senders;
-    std::vector<int> first_row;  // per group, and one past the last
-};
-
-using Buffer = std::vector<float>;
+/// World edges seen from the body: their relative vectors change sign.
+void reverse_rows(const EngineWeights& weights, const MatrixF& features, const int* list, int first,
+                  int last, AlignedBuffer& rows) {
+    const EngineWeights::Encoder& encoder = weights.world_encoder();
+    const int wide = encoder.block.in[0];
+    for (int r = first; r < last; ++r) {
+        float* row = rows.data() + static_cast<size_t>(r - first) * static_cast<size_t>(wide);
+        for (const int k : weights.relative_columns())
+            row[k] = (-features(list[r], k) - encoder.statistics.mean[k]) *
+                     encoder.statistics.inverse_deviation[k];
+    }
+}
 
 }  // namespace
 
-struct Engine::Implementation {
-    struct Step {
-        Mlp edge, world, node, body;
-        const float *receiver = nullptr, *sender = nullptr;  // A and B of the edge update
+/// One evaluation: what every thread does for every group.
+class Engine::Pass {
+ public:
+    Pass(const Engine& engine, const Features& features, Points& out)
+        : m_weights(*engine.m_weights),
+          m_config(m_weights.config()),
+          m_topology(*engine.m_topology),
+          m_work(*engine.m_workspace),
+          m_features(features),
+          m_out(out),
+          m_instructions(engine.m_settings.instructions),
+          m_width(m_config.width) {}
+
+    void find_active();
+    void encode(int group, EngineWorkspace::Scratch& mine) const;
+    void step(int group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void decode(int group, EngineWorkspace::Scratch& mine) const;
+
+ private:
+    struct Group {
+        int v0, vertices;  ///< first vertex and number
+        int w0, active;    ///< first world edge and number
     };
 
-    std::shared_ptr<const Weights> weights;
-    EngineSettings settings;
-    Mlp node_encoder, edge_encoder, world_encoder, body_encoder;
-    std::vector<Step> steps;
-    const float *decoder_w1, *decoder_b1, *decoder_w2, *decoder_b2, *decoder_w3, *decoder_b3;
-
-    std::uint64_t graph_id = 0;
-    int vertices = 0, groups = 0;
-    std::vector<EdgeTable> tables;
-    std::vector<int> first_edge;
-
-    Buffer node_in, edge_in, world_in, reverse_in, body_in;
-    Buffer nodes, edges, mesh_sum, world_sum;
-    Buffer world, reverse, bodies, body_sum;
-    Buffer product_receiver, product_sender[2];
-    std::vector<int> active;        // garment vertices with a world edge, ascending
-    std::vector<int> first_active;  // per group, and one past the last
-    std::vector<MessageBlockScratch> scratch;
-    std::vector<Buffer> decoded;
-
-    int width() const { return weights->config.width; }
-    const float* data(const std::string& name) const { return weights->tensor(name).data.data(); }
-
-    Mlp mlp(const std::string& name, const std::vector<std::string>& inputs) const;
-    void bind();
-    void prepare(const ClothGraph& graph);
-    void resize_buffers(const ClothGraph& graph);
-    void read_features(const Features& features);
-    void read_world(const Features& features);
-    void encode_group(int group, MessageBlockScratch& buffer);
-    void run_step(int group, size_t step, MessageBlockScratch& buffer);
-    void send_edges(int group, size_t step, MessageBlockScratch& buffer);
-    void send_world(int group, size_t step, MessageBlockScratch& buffer);
-    void update_nodes(int group, size_t step, MessageBlockScratch& buffer);
-    void make_products(int group, size_t step, MessageBlockScratch& buffer);
-    void decode_group(int group, int thread, Points& out);
-
-    int first_vertex(int group) const { return std::min(vertices, group * group_size); }
-    float* row(Buffer& buffer, int index) const {
-        return buffer.data() + static_cast<size_t>(index) * static_cast<size_t>(width());
+    Group group_of(int group) const;
+    float* row(AlignedBuffer& buffer, int index) const {
+        return buffer.data() + static_cast<size_t>(index) * static_cast<size_t>(m_width);
     }
+    float* world_rows(const Group& group, EngineWorkspace::Scratch& mine) const {
+        return m_config.world_every_step ? row(m_work.world, group.w0) : mine.world.data();
+    }
+    float* body_rows(const Group& group, EngineWorkspace::Scratch& mine) const {
+        return m_config.world_every_step ? row(m_work.bodies, group.w0) : mine.bodies.data();
+    }
+    void run(const MessageBlockWeights& weights, const MessageBlockRows& rows, float* out,
+             float* sum, EngineWorkspace::Scratch& mine) const {
+        message_block_forward(weights, rows, out, sum, mine.block, m_instructions);
+    }
+    void encode_rows(const EngineWeights::Encoder& encoder, const float* in, int count, float* to,
+                     EngineWorkspace::Scratch& mine) const;
+    void encode_world(const Group& group, EngineWorkspace::Scratch& mine) const;
+    void send_edges(int group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void update_bodies(const Group& group, size_t k, bool keep,
+                       EngineWorkspace::Scratch& mine) const;
+    void update_nodes(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void make_sender_products(const Group& group, size_t k) const;
+
+    const EngineWeights& m_weights;
+    const ModelConfig& m_config;
+    const EngineTopology& m_topology;
+    EngineWorkspace& m_work;
+    const Features& m_features;
+    Points& m_out;
+    const Instructions m_instructions;
+    const int m_width;
 };
 
-Mlp Engine::Implementation::mlp(const std::string& name,
-                                const std::vector<std::string>& inputs) const {
-    Mlp result;
-    MessageBlockWeights& block = result.block;
-    block.width = width();
-    for (const std::string& input : inputs) {
-        const WeightTensor& tensor = weights->tensor(name + ".first." + input + ".weight");
-        const int columns = tensor.shape[1], wide = padded(columns);
-        const float* values = tensor.data.data();
-        if (wide != columns) {
-            Buffer copy(static_cast<size_t>(width() * wide), 0.0f);
-            for (int o = 0; o < width(); ++o)
-                std::copy_n(values + o * columns, columns, copy.begin() + o * wide);
-            result.own.push_back(std::move(copy));
-            values = result.own.back().data();
-        }
-        block.in[block.inputs] = wide;
-        block.w1[block.inputs++] = values;
+void Engine::Pass::find_active() {
+    m_work.active.clear();
+    for (int i = 0; i < m_topology.vertices; ++i) {
+        if (i % EngineTopology::group_size == 0)
+            m_work.first_active[static_cast<size_t>(i / EngineTopology::group_size)] =
+                static_cast<int>(m_work.active.size());
+        if (m_features.world_mask.size() > i && m_features.world_mask[i] != 0.0f)
+            m_work.active.push_back(i);
     }
-    block.b1 = data(name + ".first.bias");
-    block.w2 = data(name + ".hidden.1.weight");
-    block.b2 = data(name + ".hidden.1.bias");
-    block.w3 = data(name + ".output.weight");
-    block.b3 = data(name + ".output.bias");
-    block.gamma = data(name + ".norm.weight");
-    block.beta = data(name + ".norm.bias");
-    return result;
+    m_work.first_active.back() = static_cast<int>(m_work.active.size());
 }
 
-void Engine::Implementation::bind() {
-    node_encoder = mlp("encoder.node", {"features"});
-    edge_encoder = mlp("encoder.edge", {"features"});
-    world_encoder = mlp("encoder.world", {"features"});
-    body_encoder = mlp("encoder.body", {"features"});
-    for (int k = 0; k < weights->config.steps; ++k) {
-        const std::string name = "step." + std::to_string(k);
-        Step step;
-        step.edge = mlp(name + ".edge", {"edge"});
-        step.receiver = data(name + ".edge.first.receiver.weight");
-        step.sender = data(name + ".edge.first.sender.weight");
-        std::vector<std::string> inputs = {"node", "mesh"};
-        if (weights->config.has_world(k)) {
-            step.world = mlp(name + ".world", {"edge", "receiver", "sender"});
-            step.body = mlp(name + ".node", {"node", "world"});
-            inputs.push_back("world");
-        }
-        step.node = mlp(name + ".node", inputs);
-        steps.push_back(std::move(step));
-    }
-    decoder_w1 = data("decoder.first.node.weight");
-    decoder_b1 = data("decoder.first.bias");
-    decoder_w2 = data("decoder.hidden.1.weight");
-    decoder_b2 = data("decoder.hidden.1.bias");
-    decoder_w3 = data("decoder.output.weight");
-    decoder_b3 = data("decoder.output.bias");
+Engine::Pass::Group Engine::Pass::group_of(int group) const {
+    const int v0 = m_topology.first_vertex(group),
+              w0 = m_work.first_active[static_cast<size_t>(group)];
+    return {v0, m_topology.first_vertex(group + 1) - v0, w0,
+            m_work.first_active[static_cast<size_t>(group) + 1] - w0};
 }
 
-static EdgeTable edge_table(const ClothGraph& graph, const std::vector<int>* sampled, int groups) {
-    EdgeTable table;
-    const int count = sampled ? static_cast<int>(sampled->size()) : graph.edge_count();
-    for (int k = 0; k < count; ++k) {
-        const int edge = sampled ? (*sampled)[static_cast<size_t>(k)] : k;
-        if (edge < 0) continue;
-        table.edges.push_back(edge);
-        table.receivers.push_back(graph.receivers[static_cast<size_t>(edge)]);
-        table.senders.push_back(graph.senders[static_cast<size_t>(edge)]);
-    }
-    for (int group = 0; group <= groups; ++group)
-        table.first_row.push_back(static_cast<int>(
-            std::lower_bound(table.receivers.begin(), table.receivers.end(), group * group_size) -
-            table.receivers.begin()));
-    return table;
-}
-
-void Engine::Implementation::prepare(const ClothGraph& graph) {
-    if (graph.id == graph_id && vertices == graph.vertex_count) return;
-    graph_id = graph.id;
-    vertices = graph.vertex_count;
-    groups = (vertices + group_size - 1) / group_size;
-    first_edge = graph.first_edge;
-    tables.clear();
-    if (weights->config.sampled_edges == 0)
-        tables.push_back(edge_table(graph, nullptr, groups));
-    else
-        for (const std::vector<int>& step : graph.schedule.edges)
-            tables.push_back(edge_table(graph, &step, groups));
-    resize_buffers(graph);
-}
-
-void Engine::Implementation::resize_buffers(const ClothGraph& graph) {
-    const size_t v = static_cast<size_t>(vertices), d = static_cast<size_t>(width());
-    const size_t e = static_cast<size_t>(graph.edge_count());
-    node_in.assign(v * static_cast<size_t>(node_encoder.block.in[0]), 0.0f);
-    edge_in.assign(e * static_cast<size_t>(edge_encoder.block.in[0]), 0.0f);
-    world_in.assign(v * static_cast<size_t>(world_encoder.block.in[0]), 0.0f);
-    body_in.assign(v * static_cast<size_t>(body_encoder.block.in[0]), 0.0f);
-    for (Buffer* buffer : {&nodes, &mesh_sum, &world_sum, &world, &bodies, &product_receiver,
-                           &product_sender[0], &product_sender[1]})
-        buffer->assign(v * d, 0.0f);
-    edges.assign(e * d, 0.0f);
-    if (weights->config.body_updates) {
-        reverse_in.assign(world_in.size(), 0.0f);
-        reverse.assign(v * d, 0.0f);
-        body_sum.assign(v * d, 0.0f);
-    }
-    active.reserve(v);
-    first_active.resize(static_cast<size_t>(groups) + 1);
-    const size_t threads =
-        static_cast<size_t>(settings.threads > 0 ? settings.threads : omp_get_max_threads());
-    scratch.resize(threads);
-    decoded.assign(threads, Buffer(2 * group_size * d));
-}
-
-static void normalise_row(const MatrixF& features, Eigen::Index from, const float* mean,
-                          const float* deviation, float* to) {
-    for (Eigen::Index c = 0; c < features.cols(); ++c)
-        to[c] = (features(from, c) - mean[c]) / deviation[c];
-}
-
-void Engine::Implementation::read_features(const Features& features) {
-    const auto read = [this](const MatrixF& matrix, const std::string& name, int stride,
-                             Buffer& to) {
-        const float* mean = data("statistics." + name + ".mean");
-        const float* deviation = data("statistics." + name + ".deviation");
-        for (Eigen::Index r = 0; r < matrix.rows(); ++r)
-            normalise_row(matrix, r, mean, deviation, to.data() + r * stride);
-    };
-    read(features.node, "node", node_encoder.block.in[0], node_in);
-    read(features.edge, "edge", edge_encoder.block.in[0], edge_in);
-    read_world(features);
-}
-
-/// The world edge seen from the body: its relative vectors change sign.
-static void reverse_row(const float* from, int columns, float* to) {
-    std::copy_n(from, columns, to);
-    int column = 0;
-    for (const FeatureGroup& group : world_layout()) {
-        if (group.name.rfind("relative", 0) == 0)
-            for (int k = 0; k < group.size; ++k) to[column + k] = -to[column + k];
-        column += group.size;
-    }
-}
-
-void Engine::Implementation::read_world(const Features& features) {
-    active.clear();
-    const float* mean[] = {data("statistics.world.mean"), data("statistics.body.mean")};
-    const float* deviation[] = {data("statistics.world.deviation"),
-                                data("statistics.body.deviation")};
-    const int world_columns = world_encoder.block.in[0], body_columns = body_encoder.block.in[0];
-    for (int i = 0; i < vertices; ++i) {
-        if (i % group_size == 0)
-            first_active[static_cast<size_t>(i / group_size)] = static_cast<int>(active.size());
-        if (features.world_mask.size() <= i || features.world_mask[i] == 0.0f) continue;
-        const int r = static_cast<int>(active.size());
-        active.push_back(i);
-        normalise_row(features.world, i, mean[0], deviation[0],
-                      world_in.data() + r * world_columns);
-        normalise_row(features.body, i, mean[1], deviation[1], body_in.data() + r * body_columns);
-        if (weights->config.body_updates)
-            reverse_row(world_in.data() + r * world_columns, world_columns,
-                        reverse_in.data() + r * world_columns);
-    }
-    first_active.back() = static_cast<int>(active.size());
-}
-
-/// Rows [first, last) of a matrix through an encoder.
-static void encode_rows(const Mlp& encoder, const Buffer& in, int first, int last, Buffer& out,
-                        MessageBlockScratch& scratch) {
-    MessageBlockRows rows;
-    rows.rows = last - first;
-    rows.x[0] = in.data() + static_cast<size_t>(first) * static_cast<size_t>(encoder.block.in[0]);
-    const size_t d = static_cast<size_t>(encoder.block.width);
-    float* to = out.data() + static_cast<size_t>(first) * d;
-    std::fill_n(to, static_cast<size_t>(rows.rows) * d, 0.0f);
-    message_block_forward(encoder.block, rows, nullptr, to, scratch);
-}
-
-void Engine::Implementation::encode_group(int group, MessageBlockScratch& buffer) {
-    const int v0 = first_vertex(group), v1 = first_vertex(group + 1);
-    encode_rows(node_encoder, node_in, v0, v1, nodes, buffer);
-    encode_rows(edge_encoder, edge_in, first_edge[static_cast<size_t>(v0)],
-                first_edge[static_cast<size_t>(v1)], edges, buffer);
-    const int w0 = first_active[static_cast<size_t>(group)];
-    const int w1 = first_active[static_cast<size_t>(group) + 1];
-    encode_rows(world_encoder, world_in, w0, w1, world, buffer);
-    encode_rows(body_encoder, body_in, w0, w1, bodies, buffer);
-    if (weights->config.body_updates)
-        encode_rows(world_encoder, reverse_in, w0, w1, reverse, buffer);
-    make_products(group, 0, buffer);
-}
-
-void Engine::Implementation::make_products(int group, size_t step, MessageBlockScratch& buffer) {
-    const int v0 = first_vertex(group), count = first_vertex(group + 1) - v0, d = width();
-    dense_layer(count, d, d, row(nodes, v0), steps[step].receiver, nullptr, false,
-                row(product_receiver, v0), buffer);
-    dense_layer(count, d, d, row(nodes, v0), steps[step].sender, nullptr, false,
-                row(product_sender[step % 2], v0), buffer);
-}
-
-void Engine::Implementation::send_edges(int group, size_t step, MessageBlockScratch& buffer) {
-    const EdgeTable& table = tables[tables.size() == 1 ? 0 : step];
-    const int first = table.first_row[static_cast<size_t>(group)];
-    const int v0 = first_vertex(group), v1 = first_vertex(group + 1);
-    std::fill(row(mesh_sum, v0), row(mesh_sum, v1), 0.0f);
-    MessageBlockRows rows;
-    rows.rows = table.first_row[static_cast<size_t>(group) + 1] - first;
-    rows.x[0] = edges.data();
-    rows.x_index[0] = table.edges.data() + first;
-    rows.products = 2;
-    rows.p[0] = product_receiver.data();
-    rows.p_index[0] = table.receivers.data() + first;
-    rows.p[1] = product_sender[step % 2].data();
-    rows.p_index[1] = table.senders.data() + first;
-    rows.sum_index = table.receivers.data() + first;
-    rows.sum_scale = static_cast<float>(weights->config.message_scale);
-    const bool last = step + 1 == steps.size();
-    message_block_forward(steps[step].edge.block, rows, last ? nullptr : edges.data(),
-                          mesh_sum.data(), buffer);
-}
-
-void Engine::Implementation::send_world(int group, size_t step, MessageBlockScratch& buffer) {
-    const int first = first_active[static_cast<size_t>(group)];
-    const int count = first_active[static_cast<size_t>(group) + 1] - first;
-    std::fill(row(world_sum, first_vertex(group)), row(world_sum, first_vertex(group + 1)), 0.0f);
-    const bool last = step + 1 == steps.size();
-    const bool keep = weights->config.world_every_step && !last;
+void Engine::Pass::encode_rows(const EngineWeights::Encoder& encoder, const float* in, int count,
+                               float* to, EngineWorkspace::Scratch& mine) const {
     MessageBlockRows rows;
     rows.rows = count;
-    rows.x[0] = row(world, first);
-    rows.x[1] = nodes.data();
-    rows.x_index[1] = active.data() + first;
-    rows.x[2] = row(bodies, first);
-    rows.sum_index = active.data() + first;
-    message_block_forward(steps[step].world.block, rows, keep ? row(world, first) : nullptr,
-                          world_sum.data(), buffer);
-    if (!weights->config.body_updates || last) return;
-    std::fill_n(row(body_sum, first), static_cast<size_t>(count * width()), 0.0f);
-    MessageBlockRows back;
-    back.rows = count;
-    back.x[0] = row(reverse, first);
-    back.x[1] = row(bodies, first);
-    back.x[2] = nodes.data();
-    back.x_index[2] = active.data() + first;
-    message_block_forward(steps[step].world.block, back, keep ? row(reverse, first) : nullptr,
-                          row(body_sum, first), buffer);
-    // body nodes share the garment's node network; they have no mesh edges
-    MessageBlockRows update;
-    update.rows = count;
-    update.x[0] = row(bodies, first);
-    update.x[1] = row(body_sum, first);
-    message_block_forward(steps[step].body.block, update, row(bodies, first), nullptr, buffer);
+    rows.x[0] = in;
+    std::fill_n(to, static_cast<size_t>(count) * static_cast<size_t>(m_width), 0.0f);
+    run(encoder.block, rows, nullptr, to, mine);
 }
 
-void Engine::Implementation::update_nodes(int group, size_t step, MessageBlockScratch& buffer) {
-    const int v0 = first_vertex(group);
-    MessageBlockWeights block = steps[step].node.block;
+void Engine::Pass::encode(int group, EngineWorkspace::Scratch& mine) const {
+    const Group g = group_of(group);
+    encode_rows(m_weights.node_encoder(),
+                read_rows(m_features.node, m_weights.node_encoder(), nullptr, g.v0,
+                          g.v0 + g.vertices, mine.in),
+                g.vertices, row(m_work.nodes, g.v0), mine);
+    const int e0 = m_topology.first_edge[static_cast<size_t>(group)];
+    const int e1 = m_topology.first_edge[static_cast<size_t>(group) + 1];
+    encode_rows(m_weights.edge_encoder(),
+                read_rows(m_features.edge, m_weights.edge_encoder(), nullptr, e0, e1, mine.in),
+                e1 - e0, row(m_work.edges, e0), mine);
+    if (m_config.world_every_step) encode_world(g, mine);
+    make_sender_products(g, 0);
+}
+
+void Engine::Pass::encode_world(const Group& group, EngineWorkspace::Scratch& mine) const {
+    const int first = group.w0, last = group.w0 + group.active;
+    const int* list = m_work.active.data();
+    encode_rows(m_weights.body_encoder(),
+                read_rows(m_features.body, m_weights.body_encoder(), list, first, last, mine.in),
+                group.active, body_rows(group, mine), mine);
+    read_rows(m_features.world, m_weights.world_encoder(), list, first, last, mine.in);
+    encode_rows(m_weights.world_encoder(), mine.in.data(), group.active, world_rows(group, mine),
+                mine);
+    if (!m_config.body_updates) return;
+    reverse_rows(m_weights, m_features.world, list, first, last, mine.in);
+    encode_rows(m_weights.world_encoder(), mine.in.data(), group.active, row(m_work.reverse, first),
+                mine);
+}
+
+void Engine::Pass::make_sender_products(const Group& group, size_t k) const {
+    dense_layer(group.vertices, m_width, m_width, row(m_work.nodes, group.v0),
+                m_weights.step(k).sender, nullptr, false, row(m_work.sender[k % 2], group.v0),
+                m_instructions);
+}
+
+void Engine::Pass::send_edges(int group, size_t k, EngineWorkspace::Scratch& mine) const {
+    const Group g = group_of(group);
+    const EdgeTable& table = m_topology.table(k);
+    const int first = table.first_row[static_cast<size_t>(group)];
+    dense_layer(g.vertices, m_width, m_width, row(m_work.nodes, g.v0), m_weights.step(k).receiver,
+                nullptr, false, mine.receiver.data(), m_instructions);
+    std::fill(mine.mesh_sum.begin(), mine.mesh_sum.end(), 0.0f);
+    // the group's rows of these two lie in scratch: counted from its first vertex
+    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(g.v0) * m_width;
     MessageBlockRows rows;
-    rows.rows = first_vertex(group + 1) - v0;
-    rows.x[0] = row(nodes, v0);
-    rows.x[1] = row(mesh_sum, v0);
-    if (block.inputs == 3 && !active.empty())
-        rows.x[2] = row(world_sum, v0);
-    else
-        block.inputs = 2;
-    message_block_forward(block, rows, row(nodes, v0), nullptr, buffer);
+    rows.rows = table.first_row[static_cast<size_t>(group) + 1] - first;
+    rows.x[0] = table.edges.empty() ? row(m_work.edges, first) : m_work.edges.data();
+    rows.x_index[0] = table.edges.empty() ? nullptr : table.edges.data() + first;
+    rows.products = 2;
+    rows.p[0] = mine.receiver.data() - offset;
+    rows.p_index[0] = rows.sum_index = table.receivers.data() + first;
+    rows.p[1] = m_work.sender[k % 2].data();
+    rows.p_index[1] = table.senders.data() + first;
+    rows.sum_scale = static_cast<float>(m_config.message_scale);
+    const bool last = static_cast<int>(k) + 1 == m_config.steps;
+    run(m_weights.step(k).edge, rows, last ? nullptr : const_cast<float*>(rows.x[0]),
+        mine.mesh_sum.data() - offset, mine);
 }
 
-void Engine::Implementation::run_step(int group, size_t step, MessageBlockScratch& buffer) {
-    send_edges(group, step, buffer);
-    if (weights->config.has_world(static_cast<int>(step)) && !active.empty())
-        send_world(group, step, buffer);
-    update_nodes(group, step, buffer);
-    if (step + 1 < steps.size()) make_products(group, step + 1, buffer);
+void Engine::Pass::send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const {
+    const bool keep = m_config.world_every_step && static_cast<int>(k) + 1 < m_config.steps;
+    std::fill(mine.world_sum.begin(), mine.world_sum.end(), 0.0f);
+    float* world = world_rows(group, mine);
+    MessageBlockRows rows;
+    rows.rows = group.active;
+    rows.x[0] = world;
+    rows.x[1] = m_work.nodes.data();
+    rows.x_index[1] = m_work.active.data() + group.w0;
+    rows.x[2] = body_rows(group, mine);
+    rows.sum_index = m_work.active.data() + group.w0;
+    run(m_weights.step(k).world, rows, keep ? world : nullptr,
+        mine.world_sum.data() - static_cast<std::ptrdiff_t>(group.v0) * m_width, mine);
+    if (m_config.body_updates && static_cast<int>(k) + 1 < m_config.steps)
+        update_bodies(group, k, keep, mine);
 }
 
-void Engine::Implementation::decode_group(int group, int thread, Points& out) {
-    const int v0 = first_vertex(group), count = first_vertex(group + 1) - v0, d = width();
-    MessageBlockScratch& buffer = scratch[static_cast<size_t>(thread)];
-    float* h1 = decoded[static_cast<size_t>(thread)].data();
-    float* h2 = h1 + static_cast<size_t>(group_size * d);
-    dense_layer(count, d, d, row(nodes, v0), decoder_w1, decoder_b1, true, h1, buffer);
-    dense_layer(count, d, d, h1, decoder_w2, decoder_b2, true, h2, buffer);
-    for (int r = 0; r < count; ++r)
-        for (int k = 0; k < 3; ++k) {
-            float sum = decoder_b3[k];
-            for (int i = 0; i < d; ++i) sum += decoder_w3[k * d + i] * h2[r * d + i];
-            out(v0 + r, k) = sum;
+/// Body nodes share the garment's node network; they have no mesh edges.
+void Engine::Pass::update_bodies(const Group& group, size_t k, bool keep,
+                                 EngineWorkspace::Scratch& mine) const {
+    std::fill(mine.body_sum.begin(), mine.body_sum.end(), 0.0f);
+    float* bodies = body_rows(group, mine);
+    float* reverse = row(m_work.reverse, group.w0);
+    MessageBlockRows back;
+    back.rows = group.active;
+    back.x[0] = reverse;
+    back.x[1] = bodies;
+    back.x[2] = m_work.nodes.data();
+    back.x_index[2] = m_work.active.data() + group.w0;
+    run(m_weights.step(k).world, back, keep ? reverse : nullptr, mine.body_sum.data(), mine);
+    MessageBlockRows update;
+    update.rows = group.active;
+    update.x[0] = bodies;
+    update.x[2] = mine.body_sum.data();
+    run(m_weights.step(k).node, update, bodies, nullptr, mine);
+}
+
+void Engine::Pass::update_nodes(const Group& group, size_t k,
+                                EngineWorkspace::Scratch& mine) const {
+    MessageBlockRows rows;
+    rows.rows = group.vertices;
+    rows.x[0] = row(m_work.nodes, group.v0);
+    rows.x[1] = mine.mesh_sum.data();
+    if (group.active > 0 && m_config.has_world(static_cast<int>(k)))
+        rows.x[2] = mine.world_sum.data();
+    run(m_weights.step(k).node, rows, row(m_work.nodes, group.v0), nullptr, mine);
+}
+
+void Engine::Pass::step(int group, size_t k, EngineWorkspace::Scratch& mine) const {
+    const Group g = group_of(group);
+    const bool has_world = m_config.has_world(static_cast<int>(k));
+    send_edges(group, k, mine);
+    if (has_world && g.active > 0) {
+        if (!m_config.world_every_step) encode_world(g, mine);
+        send_world(g, k, mine);
+    }
+    update_nodes(g, k, mine);
+    if (static_cast<int>(k) + 1 < m_config.steps) make_sender_products(g, k + 1);
+}
+
+void Engine::Pass::decode(int group, EngineWorkspace::Scratch& mine) const {
+    const Group g = group_of(group);
+    const EngineWeights::Decoder& decoder = m_weights.decoder();
+    float *first = mine.receiver.data(), *second = mine.hidden.data();
+    dense_layer(g.vertices, m_width, m_width, row(m_work.nodes, g.v0), decoder.first,
+                decoder.first_bias, true, first, m_instructions);
+    dense_layer(g.vertices, m_width, m_width, first, decoder.hidden, decoder.hidden_bias, true,
+                second, m_instructions);
+    for (int r = 0; r < g.vertices; ++r)
+        for (int c = 0; c < 3; ++c) {
+            float sum = decoder.output_bias[c];
+            for (int i = 0; i < m_width; ++i)
+                sum += decoder.output[c * m_width + i] * second[r * m_width + i];
+            m_out(g.v0 + r, c) = sum;
         }
 }
 
-Engine::Engine(std::shared_ptr<const Weights> weights, EngineSettings settings)
-    : m_implementation(std::make_unique<Implementation>()) {
-    const ModelConfig& config = weights->config;
-    if (config.width % 16 != 0 || config.hidden_layers != 2)
-        throw ArgumentError("weights of '" + config.variant + "'",
-                            "have width " + std::to_string(config.width) + " and " +
-                                std::to_string(config.hidden_layers) + " hidden layers",
-                            "the engine takes widths that are multiples of 16 and two hidden "
-                            "layers; run others with LibTorch");
-    m_implementation->weights = std::move(weights);
-    m_implementation->settings = settings;
-    m_implementation->bind();
+Engine::Engine(std::shared_ptr<const EngineWeights> weights, EngineSettings settings)
+    : m_weights(std::move(weights)), m_settings(settings) {
+    if (settings.threads < 0)
+        throw ArgumentError("threads", std::to_string(settings.threads) + " is negative",
+                            "use 0 for as many as there are, or a positive number");
+    if (!is_supported(settings.instructions))
+        throw ArgumentError("instructions", "are not those of this processor",
+                            "leave them at best_instructions()");
+}
+
+Engine::Engine(const Weights& weights, EngineSettings settings)
+    : Engine(std::make_shared<const EngineWeights>(weights), settings) {
 }
 
 Engine::~Engine() = default;
 
 const ModelConfig& Engine::config() const {
-    return m_implementation->weights->config;
+    return m_weights->config();
+}
+
+void Engine::prepare(const ClothGraph& graph) {
+    if (m_topology && m_topology->graph_id == graph.id) return;
+    const int threads = m_settings.threads > 0 ? m_settings.threads : omp_get_max_threads();
+    m_topology = std::make_unique<Topology>(graph, config().sampled_edges != 0);
+    m_workspace = std::make_unique<Workspace>(*m_weights, *m_topology, threads);
 }
 
 void Engine::predict(const ClothGraph& graph, const Features& features, Points& out) {
-    Implementation& impl = *m_implementation;
     out.resize(graph.vertex_count, 3);
     if (features.node.rows() != graph.vertex_count || features.edge.rows() != graph.edge_count()) {
         out.setConstant(std::numeric_limits<double>::quiet_NaN());
         return;
     }
-    impl.prepare(graph);
-    impl.read_features(features);
-    const int threads = static_cast<int>(impl.scratch.size());
+    prepare(graph);
+    Pass pass(*this, features, out);
+    pass.find_active();
+    const int threads = static_cast<int>(m_workspace->scratch.size()), groups = m_topology->groups;
+    const size_t steps = static_cast<size_t>(config().steps);
 #pragma omp parallel num_threads(threads)
     {
-        const int thread = omp_get_thread_num();
-        MessageBlockScratch& buffer = impl.scratch[static_cast<size_t>(thread)];
-#pragma omp for schedule(static)
-        for (int group = 0; group < impl.groups; ++group) impl.encode_group(group, buffer);
-        for (size_t step = 0; step < impl.steps.size(); ++step) {
-#pragma omp for schedule(static)
-            for (int group = 0; group < impl.groups; ++group) impl.run_step(group, step, buffer);
+        auto& mine = m_workspace->scratch[static_cast<size_t>(omp_get_thread_num())];
+#pragma omp for schedule(dynamic)
+        for (int group = 0; group < groups; ++group) pass.encode(group, mine);
+        for (size_t k = 0; k < steps; ++k) {
+#pragma omp for schedule(dynamic)
+            for (int group = 0; group < groups; ++group) pass.step(group, k, mine);
         }
-#pragma omp for schedule(static)
-        for (int group = 0; group < impl.groups; ++group) impl.decode_group(group, thread, out);
+#pragma omp for schedule(dynamic)
+        for (int group = 0; group < groups; ++group) pass.decode(group, mine);
     }
 }
 
 EngineMemory Engine::memory() const {
-    const Implementation& impl = *m_implementation;
     EngineMemory memory;
-    for (const auto& [name, tensor] : impl.weights->tensors)
-        memory.weights += tensor.data.size() * sizeof(float);
-    for (const EdgeTable& table : impl.tables)
-        memory.topology += sizeof(int) * (table.edges.capacity() + table.receivers.capacity() +
-                                          table.senders.capacity() + table.first_row.capacity());
-    memory.topology += sizeof(int) * (impl.first_edge.capacity() + impl.first_active.capacity() +
-                                      impl.active.capacity());
-    for (const Buffer* buffer :
-         {&impl.node_in, &impl.edge_in, &impl.world_in, &impl.reverse_in, &impl.body_in,
-          &impl.nodes, &impl.edges, &impl.mesh_sum, &impl.world_sum, &impl.world, &impl.reverse,
-          &impl.bodies, &impl.body_sum, &impl.product_receiver, &impl.product_sender[0],
-          &impl.product_sender[1]})
-        memory.workspace += buffer->capacity() * sizeof(float);
-    for (const Buffer& buffer : impl.scratch) memory.workspace += buffer.capacity() * sizeof(float);
-    for (const Buffer& buffer : impl.decoded) memory.workspace += buffer.capacity() * sizeof(float);
+    memory.weights = m_weights->bytes();
+    if (m_topology) memory.topology = m_topology->bytes();
+    if (m_workspace) memory.workspace = m_workspace->bytes();
     return memory;
 }
 

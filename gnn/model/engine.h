@@ -2,34 +2,37 @@
 
 #include <memory>
 
+#include "gnn/model/engine_weights.h"
 #include "gnn/model/predictor.h"
-#include "gnn/model/weights.h"
 
 namespace cloth {
 
 struct EngineSettings {
     int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
+    Instructions instructions = best_instructions();
 };
 
 /// Resident bytes of an engine by part.
 struct EngineMemory {
-    size_t weights = 0;    ///< shared by engines of the same weights
+    size_t weights = 0;    ///< shared by engines of the same EngineWeights
     size_t topology = 0;   ///< tables of the garment
     size_t workspace = 0;  ///< latents and scratch
+    size_t total() const { return weights + topology + workspace; }
 };
 
 /// Runs trained weights without LibTorch: fused message blocks over groups of neighbouring
-/// vertices, two barriers a frame and one per message step, no allocation once the garment is
-/// known.
+/// vertices, one barrier per message step, no allocation once the garment is known.
 ///
-///     auto weights = std::make_shared<const Weights>(Weights::load(file));
+///     const auto weights = std::make_shared<const EngineWeights>(Weights::load(file));
 ///     LearnedStepper stepper(garment, std::make_shared<Engine>(weights));
 ///
 /// One engine serves one thread at a time; several share their weights.
 class Engine : public Predictor {
  public:
-    /// @throws ArgumentError if the width is no multiple of 16 or there are not two hidden layers
-    explicit Engine(std::shared_ptr<const Weights> weights, EngineSettings settings = {});
+    /// @throws ArgumentError if this processor lacks the instructions or threads is negative
+    explicit Engine(std::shared_ptr<const EngineWeights> weights, EngineSettings settings = {});
+    /// Weights of its own. @throws ArgumentError as EngineWeights does
+    explicit Engine(const Weights& weights, EngineSettings settings = {});
     ~Engine() override;
 
     const ModelConfig& config() const override;
@@ -38,8 +41,16 @@ class Engine : public Predictor {
     EngineMemory memory() const;
 
  private:
-    struct Implementation;
-    std::unique_ptr<Implementation> m_implementation;
+    struct Topology;
+    struct Workspace;
+    class Pass;
+
+    void prepare(const ClothGraph& graph);
+
+    std::shared_ptr<const EngineWeights> m_weights;
+    EngineSettings m_settings;
+    std::unique_ptr<Topology> m_topology;
+    std::unique_ptr<Workspace> m_workspace;
 };
 
 }  // namespace cloth

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <vector>
+#include <cstddef>
+
+#include "gnn/model/aligned_buffer.h"
 
 namespace cloth {
 
@@ -15,7 +17,8 @@ namespace cloth {
 /// first layer); a node update has the node latent and the summed messages as x. Temporaries of a
 /// tile stay in cache; the backward pass computes them again instead of storing them.
 ///
-/// Single-threaded; rows are processed in order, so results do not depend on anything else.
+/// Single-threaded; rows are processed in order, and a row's numbers do not depend on the rows
+/// beside it.
 struct MessageBlockWeights {
     static constexpr int max_inputs = 3;
     int width = 0;                                  ///< D, a multiple of 16
@@ -26,12 +29,16 @@ struct MessageBlockWeights {
     const float *w2 = nullptr, *b2 = nullptr;       ///< (D x D), (D)
     const float *w3 = nullptr, *b3 = nullptr;       ///< (D x D), (D)
     const float *gamma = nullptr, *beta = nullptr;  ///< LayerNorm's (D)
+
+    /// pack_block()'s result: the forward pass then needs no w1, w2, w3. Null: packed in each call.
+    const float* panels = nullptr;
 };
 
 /// Which rows of which matrices a block reads and writes. A null index means row r itself.
 struct MessageBlockRows {
     int rows = 0;
-    const float* x[MessageBlockWeights::max_inputs] = {};      ///< each (* x in[k])
+    const float* x[MessageBlockWeights::max_inputs] = {};      ///< each (* x in[k]); null: zeros
+                                                               ///< (x[1], x[2], forward only)
     const int* x_index[MessageBlockWeights::max_inputs] = {};  ///< (rows)
     int products = 0;                                          ///< 0 to 2
     const float* p[2] = {};                                    ///< each (* x D)
@@ -50,27 +57,43 @@ struct MessageBlockGradients {
     float *gamma = nullptr, *beta = nullptr;
 };
 
-using MessageBlockScratch = std::vector<float>;  ///< grown on first use, then reused
+using MessageBlockScratch = AlignedBuffer;  ///< grown on first use, then reused
+
+/// Instruction sets that the loops are compiled for.
+enum class Instructions { portable, avx2, avx512 };
+bool is_supported(Instructions instructions);  ///< by this processor
+Instructions best_instructions();
+
+/// A matrix (out x in) as the forward pass reads it: panels of 32 outputs, input by input.
+/// @param out, in  multiples of 16
+/// @param panels   out * in numbers
+void pack_panels(const float* weight, int out, int in, float* panels);
+
+/// Number of floats of a block's panels, and the panels: w1[0], ..., w2, w3.
+std::size_t block_panel_count(const MessageBlockWeights& weights);
+void pack_block(const MessageBlockWeights& weights, float* panels);
 
 /// @param out  residual output, indexed like x[0] (x_0 + m), or null; may be x[0] itself
 /// @param sum  summed messages (* x D), added to, or null
 void message_block_forward(const MessageBlockWeights& weights, const MessageBlockRows& rows,
-                           float* out, float* sum, MessageBlockScratch& scratch);
+                           float* out, float* sum, MessageBlockScratch& scratch,
+                           Instructions instructions = best_instructions());
 
 /// @param d_out  gradient of `out` (indexed like x[0]), or null. The residual's own share of it is
 ///               not added to gradients.x[0]: the caller starts that gradient as a copy of d_out.
 /// @param d_sum  gradient of `sum`, or null
 void message_block_backward(const MessageBlockWeights& weights, const MessageBlockRows& rows,
                             const float* d_out, const float* d_sum,
-                            const MessageBlockGradients& gradients, MessageBlockScratch& scratch);
+                            const MessageBlockGradients& gradients, MessageBlockScratch& scratch,
+                            Instructions instructions = best_instructions());
 
 /// y = x W' + b, with relu if asked for: one layer for rows that need no fusion.
 /// @param x       (rows x in)
-/// @param weight  (out x in); out a multiple of 16
+/// @param panels  of the weight (out x in), from pack_panels()
 /// @param bias    (out), or null
 /// @param y       (rows x out)
-void dense_layer(int rows, int in, int out, const float* x, const float* weight, const float* bias,
-                 bool with_relu, float* y, MessageBlockScratch& scratch);
+void dense_layer(int rows, int in, int out, const float* x, const float* panels, const float* bias,
+                 bool with_relu, float* y, Instructions instructions = best_instructions());
 
 /// The same forward pass as plain loops: the oracle of the tests.
 void message_block_forward_plain(const MessageBlockWeights& weights, const MessageBlockRows& rows,

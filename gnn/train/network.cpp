@@ -140,7 +140,7 @@ Tensor Network::encode(const MlpWeights& weights, const Tensor& features) const 
     padded.first[0] = torch::constant_pad_nd(weights.first[0], {0, missing});
     const int rows = static_cast<int>(features.size(0));
     const MessageTable table(plain_rows(rows, rows), m_device);
-    return message_op({features}, {0}, {}, padded, table, false).sum;
+    return m_message_op({features}, {0}, {}, padded, table, false).sum;
 }
 
 /// The world edge seen from the body: both relative vectors change sign.
@@ -192,15 +192,15 @@ Tensor Network::world_messages(const Step& step, const Tensor& nodes, World& wor
     const Tensor& sender = step.world.first[1];
     const bool keep = m_config.world_every_step && !last;
     FusedOutput to_garment =
-        message_op({world.edges}, {2}, {product(nodes, receiver), product(world.bodies, sender)},
-                   step.world, *world.to_garment, keep);
+        m_message_op({world.edges}, {2}, {product(nodes, receiver), product(world.bodies, sender)},
+                     step.world, *world.to_garment, keep);
     if (m_config.body_updates && !last) {
-        FusedOutput to_body = message_op({world.reverse_edges}, {2},
-                                         {product(world.bodies, receiver), product(nodes, sender)},
-                                         step.world, *world.to_body, keep);
+        FusedOutput to_body = m_message_op(
+            {world.reverse_edges}, {2}, {product(world.bodies, receiver), product(nodes, sender)},
+            step.world, *world.to_body, keep);
         // Body nodes share the garment's node network; they have no mesh edges.
         world.bodies =
-            message_op({world.bodies, to_body.sum}, {0, 2}, {}, step.node, *world.body, true).out;
+            m_message_op({world.bodies, to_body.sum}, {0, 2}, {}, step.node, *world.body, true).out;
         world.reverse_edges = to_body.out;
     }
     if (keep) world.edges = to_garment.out;
@@ -217,13 +217,13 @@ Tensor Network::forward(const ClothGraph& graph, const Features& features) {
         const bool last = k + 1 == m_config.steps;
         const MessageTable& table =
             *tables.edge[tables.edge.size() == 1 ? 0 : static_cast<size_t>(k)];
-        FusedOutput mesh = message_op(
+        FusedOutput mesh = m_message_op(
             {edges}, {2}, {product(nodes, step.edge.first[0]), product(nodes, step.edge.first[1])},
             step.edge, table, !last);
         std::vector<Tensor> inputs = {nodes, mesh.sum};
         if (m_config.has_world(k) && world.count > 0)
             inputs.push_back(world_messages(step, nodes, world, last));
-        nodes = message_op(inputs, {0, 1, 2}, {}, step.node, *tables.node, true).out;
+        nodes = m_message_op(inputs, {0, 1, 2}, {}, step.node, *tables.node, true).out;
         if (!last) edges = mesh.out;
     }
     return mlp(m_decoder, nodes);

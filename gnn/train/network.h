@@ -33,6 +33,10 @@ class Network {
     const ModelConfig& config() const { return m_config; }
     Parameters& parameters() { return m_parameters; }
 
+    /// From now on LibTorch's own operations alone, not the fused one: what a user of LibTorch
+    /// would have. The same function, slower.
+    void use_plain_operations() { m_message_op = message_op_plain; }
+
     void set_statistics(const NetworkStatistics& statistics);
     const NetworkStatistics& statistics() const { return m_statistics; }
 
@@ -57,6 +61,7 @@ class Network {
     torch::Tensor world_messages(const Step& step, const torch::Tensor& nodes, World& world,
                                  bool last) const;
 
+    decltype(&message_op) m_message_op = message_op;
     ModelConfig m_config;
     torch::Device m_device;
     Parameters m_parameters;

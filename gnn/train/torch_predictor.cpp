@@ -14,6 +14,7 @@ class TorchPredictor : public Predictor {
     TorchPredictor(const Weights& weights, torch::Device device)
         : m_network(weights.config, device, 0) {
         m_network.import_weights(weights);
+        m_network.use_plain_operations();
     }
 
     const ModelConfig& config() const override { return m_network.config(); }

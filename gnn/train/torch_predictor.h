@@ -8,7 +8,7 @@
 
 namespace cloth {
 
-/// Evaluates trained weights with LibTorch.
+/// Evaluates trained weights with LibTorch's own operations: the engine's oracle and yardstick.
 /// @param device  "cpu" or "cuda"
 /// @throws ArgumentError if the device is not available
 std::unique_ptr<Predictor> make_torch_predictor(const Weights& weights,

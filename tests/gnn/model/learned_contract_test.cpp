@@ -10,7 +10,7 @@ namespace {
 
 StepperCase learned(const std::string& variant, int refine) {
     const auto make = [variant, refine](const Garment& garment) {
-        const auto weights = std::make_shared<const Weights>(
+        const auto weights = std::make_shared<const EngineWeights>(
             Weights::load(asset_path("weights/" + variant + ".safetensors")));
         LearnedStepperSettings settings;
         settings.refine = refine;

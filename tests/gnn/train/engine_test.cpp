@@ -78,7 +78,7 @@ TEST_P(EngineVariant, EqualsLibTorch) {
             const EngineScene scene(config, 500, with_sphere);
             ASSERT_EQ(scene.features.any_world, with_sphere);
             const auto weights = random_weights(config);
-            Engine engine(weights);
+            Engine engine(*weights);
             const Points expected = predict(*make_torch_predictor(*weights), scene);
             const Points actual = predict(engine, scene);
             EXPECT_LT((actual - expected).norm(), 1e-5 * expected.norm());
@@ -89,7 +89,8 @@ TEST_P(EngineVariant, SameBitsForAnyThreadCountAndTwice) {
     const ModelConfig config = small_config(GetParam());
     const EngineScene scene(config);
     const auto weights = random_weights(config);
-    Engine one(weights, {1}), three(weights, {3});
+    const auto shared = std::make_shared<const EngineWeights>(*weights);
+    Engine one(shared, {1}), three(shared, {3});
     const Points first = predict(one, scene);
     EXPECT_EQ(first, predict(one, scene));
     EXPECT_EQ(first, predict(three, scene));
@@ -102,7 +103,7 @@ TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
     const ModelConfig config = small_config("baseline", 48);
     const EngineScene scene(config, 130);
     const auto weights = random_weights(config);
-    Engine engine(weights);
+    Engine engine(*weights);
     const Points expected = predict(*make_torch_predictor(*weights), scene);
     EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
 }
@@ -110,23 +111,23 @@ TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
 TEST(Engine, FollowsAChangeOfGarment) {
     const ModelConfig config = small_config("fast");
     const auto weights = random_weights(config);
-    Engine engine(weights), fresh(weights);
+    Engine engine(*weights), fresh(*weights);
     const EngineScene small(config, 120), large(config, 700);
     predict(engine, large);
     EXPECT_EQ(predict(engine, small), predict(fresh, small));
 }
 
 TEST(Engine, RefusesWhatItCannotRun) {
-    EXPECT_THROW(Engine(random_weights(small_config("fast", 20))), std::invalid_argument);
+    EXPECT_THROW(Engine(*random_weights(small_config("fast", 20))), std::invalid_argument);
     ModelConfig config = small_config("fast");
     config.hidden_layers = 1;
-    EXPECT_THROW(Engine{random_weights(config)}, std::invalid_argument);
+    EXPECT_THROW(Engine{*random_weights(config)}, std::invalid_argument);
 }
 
 TEST(Engine, FeaturesOfAnotherGarmentGiveNoFiniteNumber) {
     const ModelConfig config = small_config("fast");
     const EngineScene scene(config, 120), other(config, 200);
-    Engine engine(random_weights(config));
+    Engine engine(*random_weights(config));
     Points out;
     engine.predict(scene.graph, other.features, out);
     EXPECT_FALSE(out.allFinite());

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "gnn/model/message_block.h"
+#include "gnn/model/weights.h"
+
+namespace cloth {
+
+/// Trained weights as the engine reads them: one block of memory, matrices in panels. Constant;
+/// any number of engines share one.
+///
+///     const auto weights = std::make_shared<const EngineWeights>(Weights::load(file));
+///     Engine shirt(weights), trousers(weights);
+class EngineWeights {
+ public:
+    /// Copies what it needs. @throws ArgumentError if the width is no multiple of 16 or there are
+    /// not two hidden layers
+    explicit EngineWeights(const Weights& weights);
+    EngineWeights(const EngineWeights&) = delete;
+    EngineWeights& operator=(const EngineWeights&) = delete;
+
+    struct Statistics {
+        const float *mean, *inverse_deviation;
+    };
+    struct Encoder {
+        MessageBlockWeights block;  ///< input filled up to a multiple of 16
+        Statistics statistics;
+    };
+    struct Step {
+        MessageBlockWeights edge, world, node;
+        const float *receiver, *sender;  ///< panels of the split first layer's A and B
+    };
+    struct Decoder {
+        const float *first, *first_bias, *hidden, *hidden_bias;  ///< panels and biases
+        const float *output, *output_bias;                       ///< (3 x D), (3)
+    };
+
+    const ModelConfig& config() const { return m_config; }
+    const Encoder& node_encoder() const { return m_node; }
+    const Encoder& edge_encoder() const { return m_edge; }
+    const Encoder& world_encoder() const { return m_world; }
+    const Encoder& body_encoder() const { return m_body; }
+    const Step& step(size_t k) const { return m_steps[k]; }
+    const Decoder& decoder() const { return m_decoder; }
+
+    /// Columns of the world edges' features that change sign if seen from the other end.
+    const std::vector<int>& relative_columns() const { return m_relative_columns; }
+
+    size_t bytes() const { return sizeof(float) * m_numbers.capacity(); }
+
+ private:
+    class Packer;
+
+    ModelConfig m_config;
+    AlignedBuffer m_numbers;
+    Encoder m_node, m_edge, m_world, m_body;
+    std::vector<Step> m_steps;
+    Decoder m_decoder;
+    std::vector<int> m_relative_columns;
+};
+
+}  // namespace cloth

@@ -1,0 +1,91 @@
+#include "tests/bench/network_scene.h"
+
+#include <cmath>
+
+#include "collision/proximity.h"
+#include "data/animated_body.h"
+#include "data/errors.h"
+#include "data/mesh_io.h"
+#include "data/paths.h"
+#include "gnn/physics/guess.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+
+namespace cloth::bench {
+namespace {
+
+constexpr double dt = 1.0 / 30.0;
+
+Obstacle filling_sphere() {
+    Obstacle sphere;
+    sphere.shape = ObstacleShape::sphere;
+    sphere.radius = 0.18;
+    sphere.pose0.translation() = sphere.pose1.translation() = Vec3(0, 1.2, 0);
+    return sphere;
+}
+
+void hang(const Garment& garment, Boundary& boundary, ClothState& state) {
+    QuasiNewtonStepper stepper(garment, {});
+    std::unique_ptr<AnimatedBody> body;
+    try {
+        body = std::make_unique<AnimatedBody>(std::make_shared<const Body>(Body::load_default()),
+                                              load_motion_by_name("01_01"));
+    } catch (const LoadError&) {
+        boundary.obstacles = {filling_sphere()};
+    }
+    for (int frame = 0; frame < 45; ++frame) {
+        if (body) boundary.obstacles = {body->obstacle(frame * dt, (frame + 1) * dt)};
+        if (frame < 44) stepper.step(boundary, dt, state);
+    }
+}
+
+/// Rows and widths of a perceptron with two hidden layers.
+double perceptron(double rows, double inputs, double width, double outputs) {
+    return 2.0 * rows * (inputs * width + width * width + width * outputs);
+}
+
+}  // namespace
+
+TshirtMoment::TshirtMoment()
+    : garment("tshirt", load_mesh(asset_path("garments/tshirt.obj")), Fabric::soft_cotton()),
+      state(ClothState::at_rest(garment)) {
+    hang(garment, boundary, state);
+}
+
+NetworkInput::NetworkInput(const TshirtMoment& moment, const ModelConfig& config)
+    : graph(build_cloth_graph(moment.garment, config.graph_settings())) {
+    SurfaceContacts contacts;
+    Proximity().query(moment.state.x, moment.boundary, contacts);
+    IncrementalPotential potential(moment.garment);
+    potential.begin_step(moment.state, moment.boundary, contacts, dt);
+    Points base;
+    starting_guess(moment.garment, moment.state, moment.boundary, contacts, dt,
+                   PotentialSettings().contact_distance, base);
+    FeatureBuilder(moment.garment, graph, config.features)
+        .build(moment.state, moment.boundary, potential, base, features);
+    active = static_cast<int>(features.world_mask.sum());
+}
+
+NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input) {
+    const double d = config.width, v = input.graph.vertex_count, e = input.graph.edge_count();
+    const double active = input.active, steps = config.steps;
+    const double sampled = config.sampled_edges == 0 ? e : std::min(e, v * config.sampled_edges);
+    const double world_steps = config.world_every_step ? steps : 1.0;
+    const auto columns = [](const auto& matrix) { return static_cast<double>(matrix.cols()); };
+    NetworkFlops flops;
+    flops.encoder = perceptron(v, columns(input.features.node), d, d) +
+                    perceptron(e, columns(input.features.edge), d, d) +
+                    perceptron(active, columns(input.features.world), d, d) +
+                    perceptron(active, columns(input.features.body), d, d);
+    flops.edges = steps * perceptron(sampled, d, d, d);
+    flops.products = steps * 2.0 * v * 2.0 * d * d;
+    flops.world = world_steps * perceptron(active, 3.0 * d, d, d);
+    flops.nodes = steps * perceptron(v, 2.0 * d, d, d) + world_steps * 2.0 * v * d * d;
+    if (config.body_updates)  // the last step's never reach the output
+        flops.world += (steps - 1.0) *
+                           (perceptron(active, 3.0 * d, d, d) + perceptron(active, 2.0 * d, d, d)) +
+                       perceptron(active, columns(input.features.world), d, d);
+    flops.decoder = perceptron(v, d, d, 3.0);
+    return flops;
+}
+
+}  // namespace cloth::bench

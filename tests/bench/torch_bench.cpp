@@ -1,0 +1,22 @@
+#include "tests/bench/torch_bench.h"
+
+#include "gnn/train/torch_predictor.h"
+#include "tests/gnn/model/random_weights.h"
+
+namespace cloth::bench {
+
+void register_torch(const std::string& name, const ModelConfig& config,
+                    std::function<const TshirtMoment*()> moment,
+                    std::function<void(benchmark::State&, double flops)> report) {
+    const auto run = [=](benchmark::State& state) {
+        const NetworkInput input(*moment(), config);
+        const auto predictor = make_torch_predictor(random_weights(config));
+        Points out;
+        predictor->predict(input.graph, input.features, out);
+        for (auto _ : state) predictor->predict(input.graph, input.features, out);
+        report(state, network_flops(config, input).total());
+    };
+    benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
+}
+
+}  // namespace cloth::bench
