@@ -18,7 +18,7 @@ std::string compare_usage() {
            "  --motion NAME          01_01, 01_03, Boxing_Toes, a clip's number or a BVH file\n"
            "  --fabric soft|real     soft cotton of 33 N/m, or cotton as measured, 5 kN/m\n"
            "  --solvers A,B,...      bullet, bullet-fine, bullet-K (K iterations), reference,\n"
-           "                         quasi-newton-K, and networks: baseline,\n"
+           "                         quasi-newton-K, xpbd-N (N substeps), and networks: baseline,\n"
            "                         sampling, reduction, fast, each with +K for K refinement\n"
            "                         iterations (default +10)\n"
            "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"

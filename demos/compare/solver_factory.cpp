@@ -11,6 +11,7 @@
 #include "gnn/model/learned_stepper.h"
 #include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/xpbd_stepper.h"
 
 namespace cloth {
 namespace {
@@ -68,6 +69,12 @@ std::unique_ptr<Stepper> make_quasi_newton(const std::string& name, const Compar
     return std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
 }
 
+std::unique_ptr<Stepper> make_xpbd(const std::string& name, const ComparisonScene& scene) {
+    XpbdSettings settings;
+    settings.substeps = iterations_of(name, "xpbd-", 1, 1000);
+    return std::make_unique<XpbdStepper>(scene.garment(), settings);
+}
+
 std::string weights_folder(const std::string& folder) {
     return folder.empty() ? asset_path("weights") : folder;
 }
@@ -108,7 +115,7 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton-K or a network of " +
+        "quasi-newton-K, xpbd-N or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") + "), NAME or NAME+K");
 }
 
@@ -120,6 +127,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
     if (name == "reference") return std::make_unique<ImplicitStepper>(scene.garment());
     if (starts_with(name, "newton")) return make_newton(name, scene);
     if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
+    if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
     return make_network(name, scene, settings);
 }
 

@@ -32,6 +32,7 @@ struct SolverSettings {
 /// | reference          | Newton's method, converged                                    |
 /// | newton-K           | K iterations of it                                            |
 /// | quasi-newton-K     | K quasi-Newton iterations                                     |
+/// | xpbd-N             | springs relaxed in N sub-steps                                |
 /// | VARIANT[+K]        | the network VARIANT.safetensors and K quasi-Newton iterations |
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
 ///

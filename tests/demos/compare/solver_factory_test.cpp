@@ -1,0 +1,47 @@
+#include "demos/compare/solver_factory.h"
+
+#include <gtest/gtest.h>
+
+#include "demos/compare/arguments.h"
+#include "tests/gnn/physics/physics_scenes.h"
+
+using namespace cloth;
+
+namespace {
+
+class FreeSheet : public ComparisonScene {
+ public:
+    FreeSheet()
+        : ComparisonScene(Garment("sheet", cloth::testing::sheet(4, 0.1), Fabric::soft_cotton())) {}
+
+    Boundary boundary(double, double) const override {
+        Boundary boundary;
+        boundary.pin_targets.resize(0, 3);
+        return boundary;
+    }
+};
+
+std::string refusal(const std::string& name) {
+    try {
+        make_solver(name, FreeSheet(), {});
+    } catch (const UsageError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+}  // namespace
+
+TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
+    const FreeSheet scene;
+    for (const std::string name : {"bullet", "bullet-fine", "bullet-50", "quasi-newton-1",
+                                   "quasi-newton-10", "xpbd-1", "xpbd-20", "xpbd-100"})
+        EXPECT_EQ(make_solver(name, scene, {})->name(), name);
+}
+
+TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
+    for (const std::string name : {"xpbd", "xpbd-", "xpbd-0", "xpbd-1001", "xpbd-20x", "xpbd--1",
+                                   "quasi-newton", "quasi-newton-", "bullet-fast"})
+        EXPECT_NE(refusal(name).find("solver " + name), std::string::npos) << refusal(name);
+    EXPECT_NE(refusal("nothing").find("xpbd-N"), std::string::npos) << refusal("nothing");
+}
