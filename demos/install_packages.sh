@@ -13,7 +13,8 @@ packages=(
   libgtest-dev libbenchmark-dev
 )
 if [ "${CLOTH_WITH_TORCH:-1}" != 0 ]; then
-  packages+=(libtorch-dev)
+  # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
+  packages+=(libtorch-dev libopenblas0)
 fi
 
 missing=()

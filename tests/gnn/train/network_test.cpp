@@ -175,6 +175,7 @@ TEST_P(EveryVariant, PredictsTheSameAfterSavingAndLoading) {
     Points out;
     make_torch_predictor(Weights::load(file))->predict(graph, features, out);
     torch::NoGradGuard no_grad;
+    network.use_plain_operations();  // as the predictor does
     const Tensor expected = network.forward(graph, features).contiguous();
     const Eigen::Map<const MatrixF> map(expected.data_ptr<float>(), expected.size(0), 3);
     EXPECT_EQ((out - map.cast<double>()).cwiseAbs().maxCoeff(), 0.0);
