@@ -18,7 +18,8 @@ using PaddedPoints = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>; 
 /// multiplier so far and alpha = 1 / (k h^2) the compliance over the time step squared.
 ///
 /// One pass leaves springs softer than they are, by about k h^2 (w_a + w_b). Over-relaxation
-/// multiplies dl / C, up to k h^2, that of the spring alone: never stiffer than the spring is.
+/// multiplies dl / C, but not beyond k h^2, the spring's own force. With many substeps that is too
+/// much: a strip of soft cotton hangs 5 % too short with 1.2 and 100 substeps of 1/30 s.
 ///
 /// Constraints are coloured greedily: no two of a colour share a vertex, so a colour's constraints
 /// are independent and overlap in the processor. Their order is fixed: equal inputs give equal

@@ -12,8 +12,9 @@ struct XpbdSettings {
                          ///< cloth stretches like rubber
     int iterations = 1;  ///< over all constraints per substep, 1 to 100; more substeps are the
                          ///< better buy (Macklin et al. 2019)
-    double relaxation = 1.2;  ///< of constraints, 1 to 1.3; above 1 they converge faster, from 1.4
-                              ///< on stiff cloth explodes
+    /// Of constraints, 1 to 1.3. 1.2 brings 20 and 40 substeps nearer to the reference than 1; from
+    /// 1.4 on stiff cloth explodes.
+    double relaxation = 1.2;
     double damping = 0.0;  ///< of velocities (1/s), 0 to 10; 0: only what substeps damp themselves
     double bending_angle = 1.0;  ///< fold (rad) at which springs bend like the fabric, 0.01 to 1.5
     double contact_distance = 4e-3;  ///< vertices are held off obstacles by this (m), 5e-4 to 1e-2
