@@ -4,6 +4,7 @@
 #include <array>
 
 #include "data/errors.h"
+#include "render/label_placement.h"
 
 namespace cloth {
 
@@ -11,6 +12,8 @@ namespace {
 
 constexpr char kInk[] = "#333";
 constexpr char kGrid[] = "#e3e3e3";
+
+constexpr double kLetter = 6.8;  ///< mean width of one (pixels)
 
 /// Where the diagram is within the picture (pixels).
 struct Frame {
@@ -68,14 +71,18 @@ void check(const std::vector<Series>& series, const PlotSettings& settings) {
     }
 }
 
+double legend_width(std::size_t letters) {
+    return letters == 0 ? 20.0 : std::max(165.0, 46.0 + kLetter * static_cast<double>(letters));
+}
+
 Diagram diagram_of(const std::vector<Series>& series, const PlotSettings& settings) {
     std::vector<double> xs, ys;
     Axis scales[2];
     scales[0].scale = settings.x_scale;
     scales[1].scale = settings.y_scale;
-    bool legend = false;
+    std::size_t legend = 0;  // letters
     for (const Series& s : series) {
-        legend = legend || !s.name.empty();
+        legend = std::max(legend, s.name.size());
         for (std::size_t i = 0; i < s.x.size(); ++i) {
             if (!scales[0].can_show(s.x[i]) || !scales[1].can_show(s.y[i])) continue;
             xs.push_back(s.x[i]);
@@ -86,7 +93,7 @@ Diagram diagram_of(const std::vector<Series>& series, const PlotSettings& settin
     Diagram diagram;
     diagram.x = axis_for(xs, settings.x_scale, 8);
     diagram.y = axis_for(ys, settings.y_scale, settings.height / 50);
-    diagram.frame = {62.0, settings.width - (legend ? 165.0 : 20.0),
+    diagram.frame = {62.0, settings.width - legend_width(legend),
                      settings.title.empty() ? 14.0 : 34.0, settings.height - 46.0};
     // Measured values end where they end, not at the next tick.
     if (settings.x_scale == Scale::linear && !xs.empty()) {
@@ -149,20 +156,57 @@ std::string line_svg(const Diagram& diagram, const Series& series, const std::st
            (series.dashed ? attribute("stroke-dasharray", "6 4") : "") + "/>\n";
 }
 
+std::string marker_svg(double x, double y, Marker marker, const std::string& colour,
+                       const std::string& title) {
+    const std::string inner = title.empty() ? "" : "<title>" + escaped(title) + "</title>";
+    if (marker == Marker::disc)
+        return "<circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", 4.0) +
+               attribute("fill", colour) + ">" + inner + "</circle>\n";
+    const double arm = 4.5;
+    const std::string path = "M" + number(x - arm) + " " + number(y - arm) + "L" + number(x + arm) +
+                             " " + number(y + arm) + "M" + number(x - arm) + " " + number(y + arm) +
+                             "L" + number(x + arm) + " " + number(y - arm);
+    return "<path" + attribute("class", "cross") + attribute("d", path) +
+           attribute("fill", "none") + attribute("stroke", colour) +
+           attribute("stroke-width", "2") + ">" + inner + "</path>\n";
+}
+
 std::string points_svg(const Diagram& diagram, const Series& series, const std::string& colour) {
     std::string svg;
     for (std::size_t i = 0; i < series.x.size(); ++i) {
         if (!diagram.can_show(series.x[i], series.y[i])) continue;
-        const double x = diagram.at_x(series.x[i]), y = diagram.at_y(series.y[i]);
         const std::string name = series.texts.empty() ? series.name : series.texts[i];
-        svg += "<circle" + attribute("cx", x) + attribute("cy", y) + attribute("r", 4.0) +
-               attribute("fill", colour) + "><title>" + escaped(name) + ": " +
-               tick_text(series.x[i]) + ", " + tick_text(series.y[i]) + "</title></circle>\n";
-        if (series.texts.empty()) continue;
-        // Texts near the right border stand on the left of their point.
-        const bool left = x > 0.8 * diagram.frame.right;
-        svg += text_element(x + (left ? -7 : 7), y - 6, series.texts[i], left ? "end" : "start");
+        svg +=
+            marker_svg(diagram.at_x(series.x[i]), diagram.at_y(series.y[i]), series.marker, colour,
+                       name + ": " + tick_text(series.x[i]) + ", " + tick_text(series.y[i]));
     }
+    return svg;
+}
+
+/// The texts of all points, beside them and clear of each other.
+std::string texts_svg(const Diagram& diagram, const std::vector<Series>& series,
+                      const std::vector<std::string>& colours) {
+    const double height = 11.0, radius = 4.0;
+    const Frame& f = diagram.frame;
+    LabelPlacement placement({f.left, f.top, f.right, f.bottom});
+    const auto for_each_point = [&](const auto& work) {
+        for (std::size_t s = 0; s < series.size(); ++s)
+            for (std::size_t i = 0; i < series[s].texts.size(); ++i)
+                if (diagram.can_show(series[s].x[i], series[s].y[i]))
+                    work(s, i, diagram.at_x(series[s].x[i]), diagram.at_y(series[s].y[i]));
+    };
+    for_each_point([&](std::size_t, std::size_t, double x, double y) {
+        placement.block({x - radius, y - radius, x + radius, y + radius});
+    });
+    std::string svg;
+    for_each_point([&](std::size_t s, std::size_t i, double x, double y) {
+        const std::string& text = series[s].texts[i];
+        const Box box = placement.place(x, y, kLetter * static_cast<double>(text.size()), height);
+        svg += text_element(0.5 * (box.left + box.right), box.bottom - 1.5, text, "middle",
+                            attribute("fill", colours[s]) + attribute("font-size", "11") +
+                                attribute("paint-order", "stroke") + attribute("stroke", "#fff") +
+                                attribute("stroke-width", "2.5"));
+    });
     return svg;
 }
 
@@ -173,9 +217,12 @@ std::string legend_svg(const Frame& f, const std::vector<Series>& series,
     for (std::size_t i = 0; i < series.size(); ++i) {
         if (series[i].name.empty()) continue;
         const double x = f.right + 14;
-        svg += line_element(x, y - 4, x + 20, y - 4,
-                            attribute("stroke", colours[i]) + attribute("stroke-width", "3") +
-                                (series[i].dashed ? attribute("stroke-dasharray", "6 4") : ""));
+        if (series[i].style == SeriesStyle::points)
+            svg += marker_svg(x + 10, y - 4, series[i].marker, colours[i], "");
+        else
+            svg += line_element(x, y - 4, x + 20, y - 4,
+                                attribute("stroke", colours[i]) + attribute("stroke-width", "3") +
+                                    (series[i].dashed ? attribute("stroke-dasharray", "6 4") : ""));
         svg += text_element(x + 26, y, series[i].name, "start");
         y += 19;
     }
@@ -235,6 +282,7 @@ std::string plot_svg(const std::vector<Series>& series, const PlotSettings& sett
         if (series[i].style != SeriesStyle::points) svg += line_svg(diagram, series[i], colours[i]);
         if (series[i].style != SeriesStyle::line) svg += points_svg(diagram, series[i], colours[i]);
     }
+    svg += texts_svg(diagram, series, colours);
     return svg + legend_svg(diagram.frame, series, colours) + "</svg>\n";
 }
 

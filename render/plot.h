@@ -8,6 +8,7 @@
 namespace cloth {
 
 enum class SeriesStyle { line, points, line_and_points };
+enum class Marker { disc, cross };
 
 /// Values that belong together: one line or one set of points.
 struct Series {
@@ -19,6 +20,7 @@ struct Series {
     std::string colour = {};  ///< as in CSS; empty: the next of category_colour()
     bool dashed = false;
     std::vector<std::string> texts = {};  ///< beside each point, or empty
+    Marker marker = Marker::disc;         ///< of the points
 };
 
 struct PlotSettings {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "data/errors.h"
+#include "render/label_placement.h"
 
 namespace cloth::test {
 namespace {
@@ -186,6 +187,40 @@ TEST(Plot, UnusableInputIsRefusedByName) {
     PlotSettings settings;
     settings.width = 10;
     EXPECT_THROW(plot_svg({}, settings), ArgumentError);
+}
+
+TEST(Plot, CrossesStandWhereDiscsWould) {
+    Series series{"a", {1, 2}, {1, 2}, SeriesStyle::points};
+    EXPECT_EQ(count_of(plot_svg({series}, {}), "<circle"), 3) << "two points and the legend";
+    series.marker = Marker::cross;
+    const std::string svg = plot_svg({series}, {});
+    EXPECT_EQ(count_of(svg, "<circle"), 0);
+    EXPECT_EQ(count_of(svg, "class=\"cross\""), 3);
+    EXPECT_TRUE(is_well_formed(svg));
+}
+
+TEST(LabelPlacement, TextsHideNeitherPointsNorEachOther) {
+    LabelPlacement placement({0, 0, 200, 200});
+    std::vector<Box> boxes;
+    for (double x : {100.0, 106.0, 112.0, 198.0}) {
+        boxes.push_back({x - 4, 96, x + 4, 104});
+        placement.block(boxes.back());
+    }
+    const std::size_t points = boxes.size();
+    for (double x : {100.0, 106.0, 112.0, 198.0}) boxes.push_back(placement.place(x, 100, 20, 11));
+    for (std::size_t text = points; text < boxes.size(); ++text) {
+        EXPECT_LE(boxes[text].right, 200.0);
+        for (std::size_t other = 0; other < text; ++other) {
+            const bool apart =
+                boxes[text].left >= boxes[other].right || boxes[text].right <= boxes[other].left ||
+                boxes[text].top >= boxes[other].bottom || boxes[text].bottom <= boxes[other].top;
+            EXPECT_TRUE(apart) << text << " " << other;
+        }
+    }
+    LabelPlacement empty({0, 0, 200, 200});
+    const Box first = empty.place(100, 100, 20, 11);
+    EXPECT_EQ(first.left, 105.0) << "right above where that is free";
+    EXPECT_EQ(first.bottom, 95.0);
 }
 
 }  // namespace
