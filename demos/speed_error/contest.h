@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "demos/compare/measure.h"
+#include "demos/compare/rollout.h"
+#include "demos/compare/single_steps.h"
+
+namespace cloth {
+
+/// A solver that takes part, warmed up.
+struct Contestant {
+    std::string name;
+    WarmStepper warm;
+};
+
+struct ContestResult {
+    Rollout rollout;
+    SingleSteps single;
+};
+
+/// Lets all solvers take turns: frame by frame each advances its own rollout, so that all meet the
+/// same machine; then frame by frame each makes a single step from the reference's state. A solver
+/// whose rollout stops being finite leaves the first part, the others go on.
+/// @return one result per contestant, in order
+std::vector<ContestResult> run_contest(const ComparisonScene& scene, const ClothState& start,
+                                       const References& references,
+                                       const std::vector<Contestant>& contestants,
+                                       const ProgressFunction& progress);
+
+}  // namespace cloth

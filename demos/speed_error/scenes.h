@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "demos/compare/comparison_scene.h"
+
+namespace cloth {
+
+struct SceneSettings {
+    std::string name = "tshirt";  ///< of scene_names()
+    std::string fabric = "soft";  ///< soft, real
+    int frames = 30;              ///< all with references; 0: as long as the scene lasts
+    int vertices = 4000;          ///< of the sheets
+};
+
+std::vector<std::string> scene_names();
+
+/// What happens in a scene, in a sentence.
+std::string scene_description(const std::string& name);
+
+/// @throws UsageError naming the choices if there is no such scene or fabric
+std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings);
+
+}  // namespace cloth

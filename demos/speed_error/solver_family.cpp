@@ -1,0 +1,62 @@
+#include "demos/speed_error/solver_family.h"
+
+#include "gnn/model/learned_stepper.h"
+
+namespace cloth {
+namespace {
+
+using Kind = SolverFamily::Kind;
+
+/// What follows `prefix` in `name`; nothing if it does not begin so.
+std::optional<std::string> after(const std::string& name, const std::string& prefix) {
+    if (name.rfind(prefix, 0) != 0) return std::nullopt;
+    return name.substr(prefix.size());
+}
+
+/// "K" or "KxS"; Bullet as shipped has two sub-steps per frame.
+SolverFamily bullet_family(const std::string& setting) {
+    const size_t cross = setting.find('x');
+    const int substeps = cross == std::string::npos ? 2 : std::stoi(setting.substr(cross + 1));
+    return {Kind::bullet, "Bullet, 1/" + std::to_string(30 * substeps) + " s",
+            setting.substr(0, cross), "iterations"};
+}
+
+SolverFamily network_family(const std::string& name) {
+    const std::optional<std::string> torch = after(name, "torch-");
+    const std::string network = torch.value_or(name);
+    const size_t plus = network.find('+');
+    const std::string refine = plus == std::string::npos
+                                   ? "+" + std::to_string(LearnedStepperSettings{}.refine)
+                                   : network.substr(plus);
+    return {Kind::network, network.substr(0, plus) + (torch ? ", LibTorch" : ""), refine,
+            "iterations"};
+}
+
+}  // namespace
+
+SolverFamily solver_family(const std::string& solver) {
+    if (solver == "bullet") return bullet_family("10x2");
+    if (solver == "bullet-fine") return bullet_family("5x8");
+    if (const auto setting = after(solver, "bullet-")) return bullet_family(*setting);
+    if (const auto setting = after(solver, "xpbd-"))
+        return {Kind::xpbd, "XPBD", *setting, "sub-steps"};
+    if (const auto setting = after(solver, "quasi-newton-"))
+        return {Kind::quasi_newton, "quasi-Newton", *setting, "iterations"};
+    if (const auto setting = after(solver, "newton-"))
+        return {Kind::newton, "Newton", *setting, "iterations"};
+    if (solver == "reference") return {Kind::newton, "Newton", "reference", "iterations"};
+    return network_family(solver);
+}
+
+std::optional<NetworkFacts> network_facts(const std::string& solver,
+                                          const SolverSettings& settings) {
+    const SolverFamily family = solver_family(solver);
+    if (family.kind != Kind::network) return std::nullopt;
+    const std::optional<std::string> torch = after(solver, "torch-");
+    const std::string network = torch.value_or(solver);
+    const std::string file = weights_file(network.substr(0, network.find('+')), settings.weights);
+    return NetworkFacts{torch ? "libtorch" : "engine", Weights::load(file).config.width,
+                        std::stoi(family.setting)};
+}
+
+}  // namespace cloth
