@@ -4,13 +4,17 @@
 //     build/release/tests/bench/engine_bench --benchmark_enable_random_interleaving=true
 //         --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 //
-// Counters: GFLOP/s of the matrix products (nothing else counts as work), and `of_peak`, the share
-// of the fused multiply-add peak that the same number of cores reached at the start of this run.
-// With LibTorch the same networks run there too, in the same process: compare within one run.
+// Counters: peak_MB is what the process grew by at most until the first evaluation was done,
+// loading included (run one benchmark alone to be sure that nothing is reused); weights, topology
+// and workspace are what stays. GFLOP/s of the matrix products (nothing else counts as work), and
+// `of_peak`, the share of the fused multiply-add peak that the same number of cores reached at the
+// start of this run. With LibTorch the same networks run there too, in the same process: compare
+// within one run.
 
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
+#include <memory>
 #include <random>
 
 #include "gnn/model/engine.h"
@@ -18,6 +22,7 @@
 #include "gnn/model/message_block.h"
 #include "tests/bench/network_scene.h"
 #include "tests/bench/peak.h"
+#include "tests/bench/peak_memory.h"
 #include "tests/bench/torch_bench.h"
 #include "tests/gnn/model/random_weights.h"
 
@@ -103,11 +108,16 @@ BENCHMARK(edge_block)->Arg(16)->Arg(32)->Arg(64)->Arg(128)->Unit(benchmark::kMic
 
 void network(benchmark::State& state, const ModelConfig& config, int threads) {
     const NetworkInput input(moment(), config);
-    Engine engine(random_weights(config), {threads});
+    std::unique_ptr<Engine> running;
     Points out;
-    engine.predict(input.graph, input.features, out);
+    const double peak_mb = peak_memory_of([&] {
+        running = std::make_unique<Engine>(random_weights(config), EngineSettings{threads});
+        running->predict(input.graph, input.features, out);
+    });
+    Engine& engine = *running;
     for (auto _ : state) engine.predict(input.graph, input.features, out);
     report(state, network_flops(config, input).total(), peak(threads));
+    state.counters["peak_MB"] = peak_mb;
     const EngineMemory memory = engine.memory();
     state.counters["weights_MB"] = 1e-6 * static_cast<double>(memory.weights);
     state.counters["topology_MB"] = 1e-6 * static_cast<double>(memory.topology);

@@ -1,6 +1,7 @@
 #include "tests/bench/torch_bench.h"
 
 #include "gnn/train/torch_predictor.h"
+#include "tests/bench/peak_memory.h"
 #include "tests/gnn/model/random_weights.h"
 
 namespace cloth::bench {
@@ -10,11 +11,15 @@ void register_torch(const std::string& name, const ModelConfig& config,
                     std::function<void(benchmark::State&, double flops)> report) {
     const auto run = [=](benchmark::State& state) {
         const NetworkInput input(*moment(), config);
-        const auto predictor = make_torch_predictor(random_weights(config));
+        std::unique_ptr<Predictor> predictor;
         Points out;
-        predictor->predict(input.graph, input.features, out);
+        const double peak_mb = peak_memory_of([&] {
+            predictor = make_torch_predictor(random_weights(config));
+            predictor->predict(input.graph, input.features, out);
+        });
         for (auto _ : state) predictor->predict(input.graph, input.features, out);
         report(state, network_flops(config, input).total());
+        state.counters["peak_MB"] = peak_mb;
     };
     benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
