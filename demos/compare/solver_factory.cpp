@@ -11,6 +11,7 @@
 #include "gnn/model/learned_stepper.h"
 #include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/substepped_stepper.h"
 #include "gnn/physics/xpbd_stepper.h"
 
 namespace cloth {
@@ -64,9 +65,14 @@ std::unique_ptr<Stepper> make_newton(const std::string& name, const ComparisonSc
 }
 
 std::unique_ptr<Stepper> make_quasi_newton(const std::string& name, const ComparisonScene& scene) {
+    const size_t cross = name.find('x');
+    const std::string first = name.substr(0, cross);
     QuasiNewtonSettings settings;
-    settings.iterations = iterations_of(name, "quasi-newton-", 0, 1000);
-    return std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
+    settings.iterations = iterations_of(first, "quasi-newton-", 0, 1000);
+    auto stepper = std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
+    if (cross == std::string::npos) return stepper;
+    return std::make_unique<SubsteppedStepper>(scene.garment(), std::move(stepper),
+                                               iterations_of(name, first + "x", 1, 64));
 }
 
 std::unique_ptr<Stepper> make_xpbd(const std::string& name, const ComparisonScene& scene) {
@@ -115,7 +121,7 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton-K, xpbd-N or a network of " +
+        "quasi-newton-K, quasi-newton-KxS, xpbd-N or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") + "), NAME or NAME+K");
 }
 

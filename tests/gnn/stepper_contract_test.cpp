@@ -2,6 +2,7 @@
 
 #include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/substepped_stepper.h"
 #include "gnn/physics/xpbd_stepper.h"
 
 namespace cloth::testing {
@@ -35,9 +36,23 @@ StepperCase xpbd(int substeps) {
     return result;
 }
 
+StepperCase substepped(int substeps) {
+    const auto make = [substeps](const Garment& garment) {
+        QuasiNewtonSettings settings;
+        settings.iterations = 5;
+        return std::make_unique<SubsteppedStepper>(
+            garment, std::make_unique<QuasiNewtonStepper>(garment, settings), substeps);
+    };
+    StepperCase result{"Substepped" + std::to_string(substeps), make, 1e-7, {}};
+    result.exceptions = {
+        {Promise::free_fall, "it falls in sub-steps, by another closed form (tested on its own)"}};
+    return result;
+}
+
 INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
                          ::testing::Values(reference(), quasi_newton(1), quasi_newton(5),
-                                           quasi_newton(20), xpbd(1), xpbd(20), xpbd(100)),
+                                           quasi_newton(20), substepped(4), xpbd(1), xpbd(20),
+                                           xpbd(100)),
                          case_name);
 
 }  // namespace

@@ -27,7 +27,7 @@ class ConstantPredictor : public Predictor {
 
 class LearnedStep : public testing::Test {
  protected:
-    LearnedStepper stepper(const Vec3& answer, int refine) const {
+    LearnedStepper stepper(const Vec3& answer, Refinement refine) const {
         LearnedStepperSettings settings;
         settings.refine = refine;
         return LearnedStepper(m_garment, std::make_shared<ConstantPredictor>(answer), settings);
@@ -84,6 +84,40 @@ TEST_F(LearnedStep, FallsBackToTheGuessAndSaysSoIfTheNetworkFails) {
     EXPECT_EQ(m_state.x, other.x);
 }
 
+TEST_F(LearnedStep, ANetworkThatRaisesTheEnergyIsNotFollowed) {
+    LearnedStepper absurd = stepper(Vec3(40.0, 300.0, 0), 2), silent = stepper(Vec3::Zero(), 2);
+    ClothState other = m_state;
+    EXPECT_TRUE(absurd.step(m_boundary, m_dt, m_state).finite);
+    EXPECT_TRUE(absurd.last_step_fell_back());
+    silent.step(m_boundary, m_dt, other);
+    EXPECT_EQ(m_state.x, other.x);
+}
+
+TEST_F(LearnedStep, OffIsTheNetworksAnswerWhateverItsEnergy) {
+    LearnedStepper absurd = stepper(Vec3(40.0, 300.0, 0), Refinement::off());
+    const Points before = m_state.x;
+    EXPECT_TRUE(absurd.step(m_boundary, m_dt, m_state).finite);
+    EXPECT_FALSE(absurd.last_step_fell_back());
+    EXPECT_GT((m_state.x - before).cwiseAbs().maxCoeff(), 1.0);
+}
+
+TEST_F(LearnedStep, RefinesUntilTheToleranceIsMetAndSaysSo) {
+    LearnedStepper loose = stepper(Vec3(0, -0.3, 0), Refinement::until(0.5, 200));
+    LearnedStepper tight = stepper(Vec3(0, -0.3, 0), Refinement::until(1e-3, 200));
+    LearnedStepper hopeless = stepper(Vec3(0, -0.3, 0), Refinement::until(1e-9, 2));
+    ClothState a = m_state, b = m_state, c = m_state;
+    const StepReport first = loose.step(m_boundary, m_dt, a);
+    const StepReport second = tight.step(m_boundary, m_dt, b);
+    const StepReport third = hopeless.step(m_boundary, m_dt, c);
+    EXPECT_TRUE(first.converged);
+    EXPECT_LE(first.residual, 0.5);
+    EXPECT_TRUE(second.converged);
+    EXPECT_LE(second.residual, 1e-3);
+    EXPECT_LT(first.iterations, second.iterations);
+    EXPECT_FALSE(third.converged);
+    EXPECT_EQ(third.iterations, 2);
+}
+
 TEST_F(LearnedStep, LeavesTheStateUntouchedIfTheStepIsImpossible) {
     LearnedStepper learned = stepper(Vec3::Zero(), 2);
     const ClothState before = m_state;
@@ -107,7 +141,9 @@ TEST_F(LearnedStep, PushesOutOfObstaclesWhatTheNetworkLeftInside) {
 TEST_F(LearnedStep, IsNamedAfterVariantAndIterations) {
     EXPECT_EQ(stepper(Vec3::Zero(), 2).name(), "fast+2");
     EXPECT_DOUBLE_EQ(stepper(Vec3::Zero(), 0).fixed_dt(), 1.0 / 30.0);
+    EXPECT_EQ(stepper(Vec3::Zero(), Refinement::until(0.01, 30)).name(), "fast+1e-02");
     EXPECT_THROW(stepper(Vec3::Zero(), -1), ArgumentError);
+    EXPECT_THROW(stepper(Vec3::Zero(), Refinement::until(-1.0, 5)), ArgumentError);
 }
 
 }  // namespace
