@@ -26,7 +26,7 @@ SolverFamily network_family(const std::string& name) {
     const std::string network = torch.value_or(name);
     const size_t plus = network.find('+');
     const std::string refine = plus == std::string::npos
-                                   ? "+" + std::to_string(LearnedStepperSettings{}.refine)
+                                   ? "+" + std::to_string(Refinement{}.iterations)
                                    : network.substr(plus);
     return {Kind::network, network.substr(0, plus) + (torch ? ", LibTorch" : ""), refine,
             "iterations"};

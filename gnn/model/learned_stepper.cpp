@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -27,8 +28,18 @@ class Stopwatch {
 };
 
 QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
+    const Refinement& refine = settings.refine;
+    if (refine.iterations < 0 || refine.iterations > 1000)
+        throw ArgumentError("refine.iterations",
+                            std::to_string(refine.iterations) + " is outside 0 to 1000",
+                            "use 10, or 0 for the network alone");
+    if (!(refine.tolerance >= 0.0) || refine.tolerance > 1e6)
+        throw ArgumentError("refine.tolerance",
+                            std::to_string(refine.tolerance) + " is outside 0 to 1e6",
+                            "use 0 for a fixed number of iterations, or a residual such as 1");
     QuasiNewtonSettings solver;
-    solver.iterations = std::max(1, settings.refine);
+    solver.iterations = settings.refine.iterations;
+    solver.tolerance = settings.refine.tolerance;
     solver.potential = settings.potential;
     return solver;
 }
@@ -45,13 +56,16 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_potential(garment, settings.potential),
       m_solver(garment, refinement(settings)),
       m_builder(garment, m_graph, m_predictor->config().features) {
-    if (settings.refine < 0 || settings.refine > 100)
-        throw ArgumentError("refine", std::to_string(settings.refine) + " is outside 0 to 100",
-                            "use 10, or 0 for the network alone");
 }
 
 std::string LearnedStepper::name() const {
-    return m_predictor->config().variant + "+" + std::to_string(m_settings.refine);
+    const Refinement& refine = m_settings.refine;
+    char text[32];
+    if (refine.tolerance > 0.0)
+        std::snprintf(text, sizeof text, "+%.0e", refine.tolerance);
+    else
+        std::snprintf(text, sizeof text, "+%d", refine.iterations);
+    return m_predictor->config().variant + text;
 }
 
 StepReport LearnedStepper::step(const Boundary& boundary, double dt, ClothState& state) {
@@ -85,13 +99,20 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
     m_prediction = m_guess;
     if (!m_fell_back) m_prediction += m_features.scale * m_output;
     place_pins(*m_garment, boundary, m_prediction);
+    if (m_settings.refine.iterations > 0) check_prediction();
     report.times.solve = watch.lap_ms();
+}
+
+void LearnedStepper::check_prediction() {
+    if (m_fell_back || m_potential.value(m_prediction) <= m_potential.value(m_guess)) return;
+    m_fell_back = true;
+    m_prediction = m_guess;
 }
 
 void LearnedStepper::refine(StepReport& report) {
     m_x = m_prediction;
     report.residual = std::numeric_limits<double>::quiet_NaN();
-    if (m_settings.refine == 0) return;
+    if (m_settings.refine.iterations == 0) return;
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     report.iterations = minimum.iterations;
     report.residual = minimum.residual;

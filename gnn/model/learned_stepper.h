@@ -10,9 +10,28 @@
 
 namespace cloth {
 
+/// How much of the quasi-Newton step follows the network.
+///
+///     settings.refine = Refinement::off();               // the paper's method
+///     settings.refine = 10;                              // a fixed number of iterations
+///     settings.refine = Refinement::until(1.0, 30);      // until the residual is below 1, or 30
+struct Refinement {
+    int iterations = 10;     ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
+                             ///< Off blows up in long motions; 2 lose a T-shirt in a jump
+    double tolerance = 0.0;  ///< of StepReport::residual; 0: all iterations run
+
+    Refinement() = default;
+    Refinement(int count) : iterations(count) {}
+    static Refinement off() { return Refinement(0); }
+    static Refinement until(double tolerance, int at_most) {
+        Refinement refinement(at_most);
+        refinement.tolerance = tolerance;
+        return refinement;
+    }
+};
+
 struct LearnedStepperSettings {
-    int refine = 10;  ///< quasi-Newton iterations after the network, 0 to 100; 0: the paper's
-                      ///< method, which blows up in long motions; 2 lose a T-shirt in a jump
+    Refinement refine;
     double safety_distance = 0.0;  ///< vertices that end nearer to an obstacle are pushed out to
                                    ///< this distance (m), 0 to 1e-3
     PotentialSettings potential;
@@ -26,14 +45,17 @@ struct LearnedStepperSettings {
 ///     LearnedStepper stepper(garment, predictor, {});
 ///     StepReport report = stepper.step(boundary, stepper.fixed_dt(), state);
 ///
-/// If the network's output is not finite the iterations start from the guess;
-/// last_step_fell_back() tells.
+/// With refinement the network's answer is checked before it is used: if it is not finite, or of
+/// higher energy than the guess it was added to, the iterations start from the guess;
+/// last_step_fell_back() tells. StepReport::residual, iterations and converged (the tolerance was
+/// met) say what the refinement reached. Without refinement only an answer that is not finite is
+/// replaced by the guess.
 class LearnedStepper : public Stepper {
  public:
     LearnedStepper(const Garment& garment, std::shared_ptr<Predictor> predictor,
                    LearnedStepperSettings settings = {});
 
-    /// The network's variant and the iterations, such as "fast+2".
+    /// The network's variant and its refinement, such as "fast+10" or, to a tolerance, "fast+1e-2".
     std::string name() const override;
     double fixed_dt() const override { return m_predictor->config().dt; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
@@ -45,6 +67,7 @@ class LearnedStepper : public Stepper {
 
  private:
     void predict(const Boundary& boundary, double dt, const ClothState& state, StepReport& report);
+    void check_prediction();
     void refine(StepReport& report);
     bool accept(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
 
