@@ -76,7 +76,8 @@ void run_worker(const CompareOptions& options) {
     }
     const ClothState start = load_trajectory(work_file(options, "settle.traj")).at(0);
     if (options.worker == "fine") {
-        save_trajectory(work_file(options, "fine.traj"), fine_reference(scene, start, progress));
+        save_trajectory(work_file(options, "fine.traj"),
+                        fine_reference(scene, {start}, scene.reference_frames(), progress));
         return;
     }
     const auto make = [&] { return make_solver(options.worker, scene, solver_settings(options)); };

@@ -25,33 +25,32 @@ ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress
     return state;
 }
 
-Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
-                            const ProgressFunction& progress) {
-    ImplicitStepper stepper(scene.garment());
-    Trajectory trajectory = {start};
-    for (int frame = 0; frame < scene.reference_frames(); ++frame) {
+/// Goes on to so many frames, `substeps` steps each.
+static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int substeps,
+                         Trajectory trajectory, int frames, const std::string& what,
+                         const ProgressFunction& progress) {
+    const double dt = ComparisonScene::frame_time / substeps;
+    for (int frame = static_cast<int>(trajectory.size()) - 1; frame < frames; ++frame) {
         ClothState state = trajectory.back();
-        stepper.step(scene.frame_boundary(frame), ComparisonScene::frame_time, state);
+        for (int step = frame * substeps; step < (frame + 1) * substeps; ++step)
+            stepper.step(scene.boundary(step * dt, (step + 1) * dt), dt, state);
         trajectory.push_back(std::move(state));
-        progress(frame + 1, scene.reference_frames(), "reference, 1/30 s");
+        progress(frame + 1, frames, what);
     }
     return trajectory;
 }
 
-Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
+Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
+                            const ProgressFunction& progress) {
+    ImplicitStepper stepper(scene.garment());
+    return extend(scene, stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
+}
+
+Trajectory fine_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                           const ProgressFunction& progress) {
     // At 1/240 s inertia rules the potential and the quasi-Newton matrix is nearly its Hessian.
     QuasiNewtonStepper stepper(scene.garment(), many_iterations(100, 1e-4));
-    constexpr int substeps = 8;
-    const double dt = ComparisonScene::frame_time / substeps;
-    Trajectory trajectory = {start};
-    ClothState state = start;
-    for (int step = 0; step < substeps * scene.reference_frames(); ++step) {
-        stepper.step(scene.boundary(step * dt, (step + 1) * dt), dt, state);
-        if (step % substeps == substeps - 1) trajectory.push_back(state);
-        progress(step + 1, substeps * scene.reference_frames(), "reference, 1/240 s");
-    }
-    return trajectory;
+    return extend(scene, stepper, 8, std::move(begun), frames, "reference, 1/240 s", progress);
 }
 
 }  // namespace cloth

@@ -21,11 +21,12 @@ using ProgressFunction = std::function<void(int, int, const std::string&)>;
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress);
 
 /// Converged steps of the frame's length.
-Trajectory coarse_reference(const ComparisonScene& scene, const ClothState& start,
+/// @param begun  the states so far, the start at least; gets as many as `frames` need
+Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                             const ProgressFunction& progress);
 
 /// The fine reference: eight converged steps of 1/240 s per frame.
-Trajectory fine_reference(const ComparisonScene& scene, const ClothState& start,
+Trajectory fine_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                           const ProgressFunction& progress);
 
 }  // namespace cloth

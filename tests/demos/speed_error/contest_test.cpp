@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "demos/compare/arguments.h"
+#include "demos/speed_error/reference_cache.h"
 #include "demos/speed_error/scene_report.h"
 
 using namespace cloth;
@@ -97,7 +98,7 @@ TEST(Contest, ASphereIsAnObstacle) {
 TEST(Contest, OthersGoOnWhenASolverFails) {
     const auto scene = make_scene(tiny("sheet"));
     const ClothState start = ClothState::at_rest(scene->garment());
-    const References references{coarse_reference(*scene, start, quiet), {}};
+    const References references{coarse_reference(*scene, {start}, 3, quiet), {}};
     for (bool reports : {true, false}) {
         std::vector<Contestant> contestants;
         contestants.push_back({"failing", {std::make_unique<FailingStepper>(1, reports), 0.0}});
@@ -114,6 +115,26 @@ TEST(Contest, OthersGoOnWhenASolverFails) {
         EXPECT_NEAR(still.progress_median, 1.0, 1e-9);
         EXPECT_FALSE(still.first_failed_frame);
     }
+}
+
+TEST(ReferenceCache, GoesOnWhereAShorterRunStopped) {
+    const std::string work = contest_of({}, "speed_error_cache").work;
+    const auto references_of = [&](int frames, const std::string& name) {
+        SceneSettings settings = tiny("sphere");
+        settings.frames = frames;
+        const auto scene = make_scene(settings);
+        const ReferenceCache cache(work, name, *scene);
+        return cache.references(cache.start(quiet), quiet);
+    };
+    const References whole = references_of(8, "whole");
+    references_of(3, "parts");
+    const References parts = references_of(8, "parts");
+    ASSERT_EQ(parts.fine.size(), 9u);
+    for (size_t k = 0; k < 9; ++k) {
+        EXPECT_EQ(parts.coarse[k].x, whole.coarse[k].x);
+        EXPECT_EQ(parts.fine[k].x, whole.fine[k].x);
+    }
+    EXPECT_EQ(references_of(2, "parts").coarse.size(), 3u);
 }
 
 TEST(Contest, UnknownNamesAreRefusedBeforeTheDearPart) {

@@ -66,8 +66,7 @@ TEST(SolverRow, TheTableHasEveryFieldOfTheJson) {
     ASSERT_EQ(lines.size(), 8u);
     std::string heading;
     const auto fields = to_json(SolverRow{});
-    for (const auto& [name, value] : fields.items())
-        heading += (heading.empty() ? "" : ",") + name;
+    for (const auto& [name, value] : fields.items()) heading += (heading.empty() ? "" : ",") + name;
     EXPECT_EQ(lines[0], heading);
     EXPECT_EQ(
         lines[0].rfind("scene,fabric,solver,backend,width,refine,threads,frames,ms_median", 0), 0u);
