@@ -1,0 +1,119 @@
+#include "gnn/physics/guarded_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "data/errors.h"
+#include "gnn/physics/guess.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+
+namespace cloth {
+namespace {
+
+constexpr double reach = 0.05;  // surfaces this near the garment's box count (m)
+
+using Box = Eigen::AlignedBox3d;
+
+Box box_of(const Points& x) {
+    return Box(Vec3(x.colwise().minCoeff()), Vec3(x.colwise().maxCoeff()));
+}
+
+/// The garment and where its mean motion takes it, with some reach.
+Box swept_box(const ClothState& state, const Vec3& shift) {
+    Box box = box_of(state.x);
+    box.extend(Box(box).translate(shift));
+    return Box(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach));
+}
+
+double mesh_motion(const Obstacle& mesh, const Box& box, const Vec3& shift) {
+    if (mesh.x0.rows() != mesh.x1.rows()) return 0.0;
+    double farthest = 0.0;
+    for (Eigen::Index i = 0; i < mesh.x0.rows(); ++i) {
+        const Vec3 from = mesh.x0.row(i), to = mesh.x1.row(i);
+        const double motion = (to - from - shift).squaredNorm();
+        if (motion <= farthest) continue;
+        Box path(from.cwiseMin(to), from.cwiseMax(to));
+        if (box.intersects(path)) farthest = motion;
+    }
+    return std::sqrt(farthest);
+}
+
+/// Of a sphere around a primitive that holds it; a plane does not turn noticeably where cloth is.
+double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift) {
+    const double size = shape.radius + shape.half_extents.norm();
+    const Vec3 from = shape.pose0.translation(), to = shape.pose1.translation();
+    const Box path(from.cwiseMin(to) - Vec3::Constant(size),
+                   from.cwiseMax(to) + Vec3::Constant(size));
+    if (shape.shape != ObstacleShape::plane && !box.intersects(path)) return 0.0;
+    const Eigen::AngleAxisd turn(
+        Eigen::Matrix3d(shape.pose0.linear().transpose() * shape.pose1.linear()));
+    return (to - from - shift).norm() + std::abs(turn.angle()) * size;
+}
+
+void check(const GuardSettings& settings) {
+    if (!(settings.max_motion >= 0.01 && settings.max_motion <= 1.0))
+        throw ArgumentError("GuardSettings::max_motion",
+                            std::to_string(settings.max_motion) + " m is outside 0.01 to 1",
+                            "use 0.1, the radius of the proximity query");
+    if (settings.max_substeps < 1 || settings.max_substeps > 64)
+        throw ArgumentError("GuardSettings::max_substeps",
+                            std::to_string(settings.max_substeps) + " is outside 1 to 64",
+                            "use 16");
+}
+
+}  // namespace
+
+double relative_motion(const Boundary& boundary, double dt, const ClothState& state) {
+    if (boundary.obstacles.empty() || state.x.rows() == 0) return 0.0;
+    const Vec3 shift = dt * state.v.colwise().mean().transpose();
+    const Box box = swept_box(state, shift);
+    double farthest = 0.0;
+    for (const Obstacle& obstacle : boundary.obstacles)
+        farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
+                                          ? mesh_motion(obstacle, box, shift)
+                                          : primitive_motion(obstacle, box, shift));
+    return farthest;
+}
+
+GuardedStepper::GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> inner,
+                               GuardSettings settings)
+    : m_garment(&garment), m_inner(std::move(inner)), m_settings(std::move(settings)) {
+    if (!m_inner) throw ArgumentError("stepper", "is null", "give the stepper to be guarded");
+    check(m_settings);
+}
+
+StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState& state) {
+    m_last_substeps = 1;
+    if (!is_valid_step(*m_garment, state, boundary, dt)) {
+        StepReport report;
+        report.finite = false;
+        report.residual = std::numeric_limits<double>::quiet_NaN();
+        return report;
+    }
+    const double parts = relative_motion(boundary, dt, state) / m_settings.max_motion;
+    int substeps = 1;  // powers of two, so that few matrices are factorised
+    while (substeps < parts && substeps < m_settings.max_substeps) substeps *= 2;
+    substeps = std::min(substeps, m_settings.max_substeps);
+    if (substeps == 1) {
+        const StepReport report = m_inner->step(boundary, dt, state);
+        if (report.finite || m_settings.max_substeps == 1) return report;
+        substeps = 2;
+    }
+    m_last_substeps = substeps;
+    ++m_guarded_steps;
+    return fallback(substeps).step(boundary, dt, state);
+}
+
+Stepper& GuardedStepper::fallback(int substeps) {
+    std::unique_ptr<SubsteppedStepper>& made = m_fallbacks[substeps];
+    if (!made)
+        made = std::make_unique<SubsteppedStepper>(
+            *m_garment, std::make_unique<QuasiNewtonStepper>(*m_garment, m_settings.solver),
+            substeps);
+    return *made;
+}
+
+}  // namespace cloth

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "gnn/physics/quasi_newton.h"
+#include "gnn/physics/substepped_stepper.h"
+
+namespace cloth {
+
+struct GuardSettings {
+    double max_motion = 0.1;  ///< steps in which an obstacle near the garment moves farther than
+                              ///< this (m, relative to the garment) are cut, 0.01 to 1. Contacts
+                              ///< are found at the start of a step within the proximity's radius:
+                              ///< what comes from farther away would pass through
+    int max_substeps = 16;  ///< 1 to 64
+    QuasiNewtonSettings solver = [] {
+        QuasiNewtonSettings settings;
+        settings.iterations = 5;  // per sub-step
+        return settings;
+    }();
+};
+
+/// Another stepper wherever it can be trusted, the quasi-Newton solver in sub-steps elsewhere:
+/// where obstacles move too fast for one step, and where the step failed. A jump of the body by
+/// metres (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
+///
+///     GuardedStepper stepper(garment, std::make_unique<LearnedStepper>(garment, engine));
+///
+/// Steps that need no guarding are those of the inner stepper, bit for bit.
+class GuardedStepper : public Stepper {
+ public:
+    /// Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
+    GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> inner,
+                   GuardSettings settings = {});
+
+    /// The inner stepper's.
+    std::string name() const override { return m_inner->name(); }
+    double fixed_dt() const override { return m_inner->fixed_dt(); }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+
+    /// Sub-steps of the last step; 1: the inner stepper's.
+    int last_substeps() const { return m_last_substeps; }
+    /// Steps so far that were not the inner stepper's.
+    long guarded_steps() const { return m_guarded_steps; }
+
+ private:
+    Stepper& fallback(int substeps);
+
+    const Garment* m_garment;
+    std::unique_ptr<Stepper> m_inner;
+    GuardSettings m_settings;
+    std::map<int, std::unique_ptr<SubsteppedStepper>> m_fallbacks;  ///< by number of sub-steps
+    int m_last_substeps = 1;
+    long m_guarded_steps = 0;
+};
+
+/// How far (m) the surfaces that may touch the garment during the step move at most, relative to
+/// the garment's mean motion. Meshes: their vertices in the box that garment and motion span.
+double relative_motion(const Boundary& boundary, double dt, const ClothState& state);
+
+}  // namespace cloth
