@@ -8,16 +8,14 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "data/paths.h"
-#include "gnn/model/engine.h"
-#include "gnn/model/learned_stepper.h"
+#include "gnn/model/learned_cloth.h"
 
 int main() {
     // The network, and how to make a stepper for a piece of cloth.
     auto weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/fast.safetensors")));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
-        return std::make_unique<cloth::LearnedStepper>(garment,
-                                                       std::make_shared<cloth::Engine>(weights));
+        return cloth::make_learned_cloth(garment, weights);
     });
 
     // A Bullet world as always, but for its last argument.

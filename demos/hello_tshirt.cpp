@@ -16,8 +16,7 @@
 #include "data/animated_body.h"
 #include "data/mesh_io.h"
 #include "data/paths.h"
-#include "gnn/model/engine.h"
-#include "gnn/model/learned_stepper.h"
+#include "gnn/model/learned_cloth.h"
 
 int main(int argc, char** argv) try {
     const std::string motion = argc > 1 ? argv[1] : "01_01";
@@ -30,8 +29,7 @@ int main(int argc, char** argv) try {
     const auto weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/fast.safetensors")));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
-        return std::make_unique<cloth::LearnedStepper>(garment,
-                                                       std::make_shared<cloth::Engine>(weights));
+        return cloth::make_learned_cloth(garment, weights);
     });
 
     btSoftBodyRigidBodyCollisionConfiguration config;
@@ -67,6 +65,8 @@ int main(int argc, char** argv) try {
                 lead_in + frames, ms / (lead_in + frames), low.y(), high.y(), 1e3 * deepest);
     for (const btGnnSolverMessage& message : solver.status().messages)
         std::printf("%s\n", message.text.c_str());
+    const auto& stepper = dynamic_cast<const cloth::GuardedStepper&>(*solver.stepperOf(cloth));
+    std::printf("%ld steps were cut into sub-steps\n", stepper.guarded_steps());
     const bool worn = solver.status().failedSteps == 0 && low.y() > 0.6f && high.y() < 2.2f;
     world.removeSoftBody(cloth);
     delete cloth;

@@ -1,8 +1,7 @@
 // The contract of all steppers, kept by the learned ones: the engine with the committed weights.
 
 #include "data/paths.h"
-#include "gnn/model/engine.h"
-#include "gnn/model/learned_stepper.h"
+#include "gnn/model/learned_cloth.h"
 #include "tests/gnn/stepper_contract.h"
 
 namespace cloth::testing {
@@ -30,9 +29,20 @@ StepperCase learned(const std::string& variant, int refine) {
     return {variant + std::to_string(refine), make, 1e-4, exceptions};
 }
 
+/// As shipped: refined and guarded.
+StepperCase shipped() {
+    StepperCase result = learned("fast", 10);
+    result.name = "fastShipped";
+    result.make = [](const Garment& garment) {
+        return make_learned_cloth(garment, std::make_shared<const EngineWeights>(Weights::load(
+                                               asset_path("weights/fast.safetensors"))));
+    };
+    return result;
+}
+
 INSTANTIATE_TEST_SUITE_P(Learned, StepperContract,
                          ::testing::Values(learned("fast", 0), learned("fast", 10),
-                                           learned("baseline", 10)),
+                                           learned("baseline", 10), shipped()),
                          case_name);
 
 }  // namespace

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "demos/compare/comparison_scene.h"
+
+namespace cloth {
+
+/// What a hard case is made of: the only thing that a case has to say.
+struct HardSceneParts {
+    Garment garment;
+    ClothState start;
+    std::function<Boundary(double t0, double t1)> outside;  ///< between two times (s)
+    double dt = ComparisonScene::frame_time;                ///< time step (s)
+    std::vector<BodySegment> segments = {};                 ///< of an animated body, for Bullet
+    /// Why a garment at x does not belong to the scene any more, such as "fell through"; optional.
+    std::function<std::string(const Boundary&, const Points& x)> loss = nullptr;
+};
+
+/// A hard case as all solvers of the reports are given their scenes. Frames are as long as the
+/// case's own time step.
+class HardScene : public ComparisonScene {
+ public:
+    HardScene(HardSceneParts parts, int frames)
+        : ComparisonScene(parts.garment), m_parts(std::move(parts)) {
+        set_length(frames, 0);
+    }
+
+    double dt() const { return m_parts.dt; }
+    const ClothState& start() const { return m_parts.start; }
+
+    Boundary boundary(double t0, double t1) const override { return m_parts.outside(t0, t1); }
+    std::vector<BodySegment> segments() const override { return m_parts.segments; }
+    std::string loss(const Boundary& boundary, const Points& x) const override {
+        return m_parts.loss ? m_parts.loss(boundary, x) : std::string();
+    }
+
+ private:
+    HardSceneParts m_parts;
+};
+
+}  // namespace cloth

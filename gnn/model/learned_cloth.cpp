@@ -1,0 +1,15 @@
+#include "gnn/model/learned_cloth.h"
+
+#include <utility>
+
+namespace cloth {
+
+std::unique_ptr<Stepper> make_learned_cloth(const Garment& garment,
+                                            std::shared_ptr<const EngineWeights> weights,
+                                            const LearnedClothSettings& settings) {
+    auto engine = std::make_shared<Engine>(std::move(weights), settings.engine);
+    auto learned = std::make_unique<LearnedStepper>(garment, std::move(engine), settings.step);
+    return std::make_unique<GuardedStepper>(garment, std::move(learned), settings.guard);
+}
+
+}  // namespace cloth
