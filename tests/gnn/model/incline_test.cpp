@@ -1,0 +1,97 @@
+// Coulomb's law for what users run: a sheet lies still on an incline below the friction angle and
+// slides above it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "data/paths.h"
+#include "data/sheet.h"
+#include "gnn/model/learned_cloth.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+
+namespace cloth {
+namespace {
+
+constexpr double dt = 1.0 / 30.0;
+constexpr double friction = 0.5;  // friction angle 26.6 degrees
+constexpr double degree = M_PI / 180.0;
+
+struct Case {
+    std::string name;
+    std::function<std::unique_ptr<Stepper>(const Garment&)> make;
+};
+
+void PrintTo(const Case& one, std::ostream* out) {
+    *out << one.name;
+}
+
+/// A plane through the origin that falls by `angle` towards +x.
+Obstacle incline(double angle) {
+    Obstacle plane;
+    plane.shape = ObstacleShape::plane;
+    plane.pose0.rotate(Eigen::AngleAxisd(-angle, Vec3::UnitZ()));
+    plane.pose1 = plane.pose0;
+    plane.friction = friction;
+    return plane;
+}
+
+class Incline : public ::testing::TestWithParam<Case> {
+ protected:
+    /// How far (m) the sheet's middle has slid down in two seconds.
+    static double slide(double angle) {
+        TriMesh mesh = make_sheet(0.2, 0.2, 120);
+        const Eigen::AngleAxisd tilt(-angle, Vec3::UnitZ());
+        for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
+            const Vec3 flat = mesh.vertices.row(i);
+            mesh.vertices.row(i) = (tilt * (flat + 3.99e-3 * Vec3::UnitY())).transpose();
+        }
+        const Garment garment("sheet", mesh, Fabric::soft_cotton(), {});
+        const auto stepper = GetParam().make(garment);
+        ClothState state = ClothState::at_rest(garment);
+        Boundary boundary;
+        boundary.pin_targets.resize(0, 3);
+        boundary.obstacles = {incline(angle)};
+        for (int frame = 0; frame < 60; ++frame) {
+            const StepReport report = stepper->step(boundary, dt, state);
+            EXPECT_TRUE(report.finite) << "frame " << frame;
+            EXPECT_LT(report.max_penetration, 1e-3) << "frame " << frame;
+        }
+        return ((state.x - mesh.vertices) * (tilt * Vec3::UnitX())).mean();
+    }
+};
+
+TEST_P(Incline, HoldsBelowTheFrictionAngle) {
+    // Friction is smoothed below a slip of 0.1 mm a step: it creeps, 6 mm/s at the most.
+    EXPECT_LT(std::abs(slide(15 * degree)), 0.012);
+    EXPECT_LT(std::abs(slide(20 * degree)), 0.012);
+}
+
+TEST_P(Incline, SlidesAboveItAsCoulombSays) {
+    for (const double angle : {32 * degree, 45 * degree}) {
+        const double acceleration = 9.81 * (std::sin(angle) - friction * std::cos(angle));
+        // backward Euler slides one step's worth ahead
+        const double expected = 0.5 * acceleration * 2.0 * (2.0 + dt);
+        EXPECT_NEAR(slide(angle), expected, 0.15 * expected);
+    }
+}
+
+std::unique_ptr<Stepper> solver(const Garment& garment) {
+    return std::make_unique<QuasiNewtonStepper>(garment, QuasiNewtonSettings{});
+}
+
+std::unique_ptr<Stepper> learned(const Garment& garment) {
+    return make_learned_cloth(garment, std::make_shared<const EngineWeights>(
+                                           Weights::load(asset_path("weights/fast.safetensors"))));
+}
+
+INSTANTIATE_TEST_SUITE_P(Steppers, Incline,
+                         ::testing::Values(Case{"QuasiNewton", solver}, Case{"Learned", learned}),
+                         [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace cloth
