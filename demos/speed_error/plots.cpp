@@ -50,10 +50,29 @@ std::string colour_of(Kind kind, size_t k) {
     return network[k % network.size()];
 }
 
+/// One colour per family; a network has the same one in both backends.
+std::vector<std::string> colours_of(const std::vector<Family>& families) {
+    std::array<std::vector<std::string>, 5> seen;  // names of each kind so far
+    std::vector<std::string> colours;
+    for (const Family& family : families) {
+        const std::string name =
+            family.family.name.substr(0, family.family.name.find(", LibTorch"));
+        std::vector<std::string>& names = seen[static_cast<size_t>(family.family.kind)];
+        const auto at = std::find(names.begin(), names.end(), name);
+        colours.push_back(colour_of(family.family.kind, static_cast<size_t>(at - names.begin())));
+        if (at == names.end()) names.push_back(name);
+    }
+    return colours;
+}
+
 struct Measure {
     std::string name, title, label;
     double SolverRow::*value;
 };
+
+bool is_torch(const std::string& solver) {
+    return solver.rfind("torch-", 0) == 0;
+}
 
 /// A family's line through all settings, then its points: discs, and crosses for failed rollouts.
 void add_series(const Family& family, const Measure& measure, const std::string& colour,
@@ -61,7 +80,7 @@ void add_series(const Family& family, const Measure& measure, const std::string&
     Series line, discs, crosses;
     line.name = family.family.name + ": " + family.family.counts;
     line.colour = discs.colour = crosses.colour = colour;
-    line.dashed = line.name.find("LibTorch") != std::string::npos;
+    line.dashed = is_torch(family.rows.front()->solver);
     discs.style = crosses.style = SeriesStyle::points;
     crosses.marker = Marker::cross;
     for (const SolverRow* row : family.rows) {
@@ -71,7 +90,8 @@ void add_series(const Family& family, const Measure& measure, const std::string&
         line.y.push_back(y);
         points.x.push_back(x);
         points.y.push_back(y);
-        points.texts.push_back(solver_family(row->solver).setting);
+        points.texts.push_back((line.dashed ? "LibTorch " : "") +
+                               solver_family(row->solver).setting);
     }
     series.insert(series.end(), {line, discs, crosses});
 }
@@ -87,11 +107,10 @@ Series failed_legend() {
 
 std::string plot(const std::vector<SolverRow>& rows, const Measure& measure) {
     std::vector<Series> series;
-    std::array<size_t, 5> count{};  // families of each kind so far
-    for (const Family& family : families_of(rows)) {
-        const Kind kind = family.family.kind;
-        add_series(family, measure, colour_of(kind, count[static_cast<size_t>(kind)]++), series);
-    }
+    const std::vector<Family> families = families_of(rows);
+    const std::vector<std::string> colours = colours_of(families);
+    for (size_t k = 0; k < families.size(); ++k)
+        add_series(families[k], measure, colours[k], series);
     series.push_back(failed_legend());
     PlotSettings settings;
     settings.title = rows.front().scene + ", " + rows.front().fabric + " cotton: " + measure.title;

@@ -1,6 +1,8 @@
 #include "demos/speed_error/solver_row.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 
 #include "demos/compare/json_numbers.h"
@@ -26,9 +28,17 @@ ordered_json rounded(double value) {
     return std::round(value * scale) / scale;
 }
 
+std::string six_digits(double value) {
+    std::array<char, 32> text{};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+    return {text.data(), end.ptr};
+}
+
 /// A value as a field of a table: texts with commas or quotes are quoted.
 std::string field(const ordered_json& value) {
     if (value.is_null()) return "";
+    if (value.is_number_float()) return six_digits(value.get<double>());
     if (!value.is_string()) return value.dump();
     std::string text = value.get<std::string>();
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
