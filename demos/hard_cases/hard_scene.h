@@ -33,6 +33,9 @@ class HardScene : public ComparisonScene {
     const ClothState& start() const { return m_parts.start; }
 
     Boundary boundary(double t0, double t1) const override { return m_parts.outside(t0, t1); }
+    Boundary boundary_of_frame(int frame) const {
+        return boundary(frame * dt(), (frame + 1) * dt());
+    }
     std::vector<BodySegment> segments() const override { return m_parts.segments; }
     std::string loss(const Boundary& boundary, const Points& x) const override {
         return m_parts.loss ? m_parts.loss(boundary, x) : std::string();

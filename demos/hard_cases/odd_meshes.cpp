@@ -96,7 +96,7 @@ TriMesh mixed_triangles() {
 }
 
 TriMesh needle_sheet() {
-    constexpr double size = 0.6, gap = 9e-4;
+    constexpr double size = 0.6, gap = 9.6e-4;
     constexpr int rows = 11, pairs = 12;
     Draft draft;
     std::vector<std::vector<int>> columns;

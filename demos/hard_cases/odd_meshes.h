@@ -8,7 +8,7 @@ namespace cloth {
 /// A ring of regular triangles from 1 mm at its inner to 5 cm at its outer border (radius 0.2 m).
 TriMesh mixed_triangles();
 
-/// A sheet of 0.6 m with pairs of columns 0.9 mm apart: needles with an angle of 1 degree between
+/// A sheet of 0.6 m with pairs of columns 1 mm apart: needles with an angle of 1 degree between
 /// triangles of 5 cm.
 TriMesh needle_sheet();
 

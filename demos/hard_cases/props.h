@@ -31,8 +31,7 @@ TriMesh level_sheet(int vertices);
 TriMesh hanging_sheet(int vertices);
 
 /// The vertices within a clip's reach of a point: one vertex would bear the weight by few edges.
-std::vector<int> clipped(const TriMesh& mesh, const std::vector<Vec3>& points,
-                         double reach = 0.05);
+std::vector<int> clipped(const TriMesh& mesh, const std::vector<Vec3>& points, double reach = 0.05);
 
 /// The vertices of a mesh that lie highest: a seam.
 std::vector<int> top_seam(const TriMesh& mesh);

@@ -1,0 +1,174 @@
+#include "demos/hard_cases/hard_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "collision/metrics.h"
+
+namespace cloth {
+namespace {
+
+std::string text(const char* pattern, double value, double bound) {
+    char line[96];
+    std::snprintf(line, sizeof line, pattern, value, bound);
+    return line;
+}
+
+/// Steps of the stepper's own length in one of the scene's.
+int ticks_per_frame(const Stepper& stepper, const HardScene& scene) {
+    if (stepper.fixed_dt() <= 0.0) return 1;
+    return static_cast<int>(std::lround(scene.dt() / stepper.fixed_dt()));
+}
+
+/// Runs one case frame by frame and holds each against the bounds.
+class HardMeter {
+ public:
+    HardMeter(const HardCase& hard, const HardScene& scene, Stepper& stepper)
+        : m_bounds(hard.bounds),
+          m_in_full(scene.frames() >= hard.frames),
+          m_scene(scene),
+          m_stepper(stepper),
+          m_state(scene.start()),
+          m_pictures(picture_frames(scene.frames())) {}
+
+    bool advance(int frame) {
+        const Points before = m_state.x;
+        const bool finite = step(frame);
+        m_run.frames = frame + 1;
+        if (!finite) {
+            m_run.finite = false;
+            fail(frame, "not finite");
+            return false;
+        }
+        measure(frame, before);
+        if (std::count(m_pictures.begin(), m_pictures.end(), frame) > 0)
+            m_run.x.push_back(m_state.x);
+        return true;
+    }
+
+    const HardRun& finish() {
+        if (m_run.finite && m_in_full) check_the_end(m_run.frames - 1);
+        return m_run;
+    }
+
+ private:
+    Boundary boundary(int frame, int tick, int ticks) const {
+        const double begin = (frame + static_cast<double>(tick) / ticks) * m_scene.dt();
+        const double end = (frame + static_cast<double>(tick + 1) / ticks) * m_scene.dt();
+        return m_scene.boundary(begin, end);
+    }
+
+    bool step(int frame) {
+        const int ticks = ticks_per_frame(m_stepper, m_scene);
+        const double dt = m_stepper.fixed_dt() > 0.0 ? m_stepper.fixed_dt() : m_scene.dt();
+        const auto begin = std::chrono::steady_clock::now();
+        bool finite = true;
+        for (int tick = 0; tick < ticks && finite; ++tick)
+            finite = m_stepper.step(boundary(frame, tick, ticks), dt, m_state).finite;
+        const auto time = std::chrono::steady_clock::now() - begin;
+        m_run.ms.push_back(std::chrono::duration<double, std::milli>(time).count());
+        return finite && m_state.x.allFinite();
+    }
+
+    void measure(int frame, const Points& before) {
+        const Boundary outside = m_scene.boundary_of_frame(frame);
+        const Garment& garment = m_scene.garment();
+        const Points motion = m_state.x - before;
+        m_run.penetration_mm.push_back(1e3 * deepest_free_vertex(outside));
+        m_run.surface_mm.push_back(
+            1e3 * measure_penetration(m_proximity, outside, garment, m_state.x).max_depth);
+        m_run.stretch_p99.push_back(measure_stretch(garment, m_state.x).p99);
+        m_run.rms_speed.push_back(rms(motion) / m_scene.dt());
+        m_motion_mm.push_back(1e3 * rms(motion));
+        check(frame);
+        if (is_impaled(outside, garment.rest().faces, m_state.x))
+            fail(frame, "a limb is through the cloth");
+        const std::string loss = m_scene.loss(outside, m_state.x);
+        if (!loss.empty()) fail(frame, loss);
+    }
+
+    /// Pins are where the scene puts them.
+    double deepest_free_vertex(const Boundary& outside) {
+        VectorX distance;
+        m_proximity.signed_distance(m_state.x, outside, StepEnd::end, distance);
+        for (const int pin : m_scene.garment().pins()) distance[pin] = 0.0;
+        return std::max(0.0, -distance.minCoeff());
+    }
+
+    static double rms(const Points& motion) {
+        return std::sqrt(motion.squaredNorm() / static_cast<double>(motion.rows()));
+    }
+
+    void check(int frame) {
+        const double depth = m_run.penetration_mm.back(), stretch = m_run.stretch_p99.back();
+        const double speed = m_run.rms_speed.back();
+        if (depth > m_bounds.penetration_mm)
+            fail(frame, text("%.1f mm inside (at most %.1f)", depth, m_bounds.penetration_mm));
+        if (stretch > m_bounds.stretch_p99)
+            fail(frame, text("stretched to %.2f (at most %.2f)", stretch, m_bounds.stretch_p99));
+        if (speed > m_bounds.rms_speed)
+            fail(frame, text("RMS speed %.1f m/s (at most %.1f)", speed, m_bounds.rms_speed));
+    }
+
+    void check_the_end(int frame) {
+        const double stretch = m_run.stretch_p99.back();
+        if (stretch > m_bounds.end_stretch_p99)
+            fail(frame, text("still stretched to %.2f at the end (at most %.2f)", stretch,
+                             m_bounds.end_stretch_p99));
+        const double top = *std::max_element(m_run.rms_speed.begin(), m_run.rms_speed.end());
+        if (top < m_bounds.least_top_speed)
+            fail(frame, text("slow motion: RMS speed at most %.2f m/s (at least %.2f)", top,
+                             m_bounds.least_top_speed));
+        double squares = 0.0;
+        const size_t all = m_motion_mm.size(), first = all - all / 3;
+        for (size_t k = first; k < all; ++k) squares += m_motion_mm[k] * m_motion_mm[k];
+        m_run.rest_jitter_mm = std::sqrt(squares / static_cast<double>(all - first));
+        if (m_run.rest_jitter_mm > m_bounds.rest_jitter_mm)
+            fail(frame, text("moves %.3f mm per frame at rest (at most %.3f)", m_run.rest_jitter_mm,
+                             m_bounds.rest_jitter_mm));
+    }
+
+    void fail(int frame, const std::string& how) {
+        if (m_run.first_failed_frame >= 0) return;
+        m_run.first_failed_frame = frame;
+        m_run.failure = how;
+    }
+
+    const Bounds& m_bounds;
+    bool m_in_full;
+    const HardScene& m_scene;
+    Stepper& m_stepper;
+    Proximity m_proximity;
+    ClothState m_state;
+    std::vector<int> m_pictures;
+    std::vector<double> m_motion_mm;
+    HardRun m_run;
+};
+
+}  // namespace
+
+std::vector<int> picture_frames(int frames) {
+    std::vector<int> pictures = {0, frames / 2, frames - 1};
+    pictures.erase(std::unique(pictures.begin(), pictures.end()), pictures.end());
+    return pictures;
+}
+
+std::string not_applicable(const Stepper& stepper, const HardScene& scene) {
+    const double fixed = stepper.fixed_dt();
+    if (fixed <= 0.0) return {};
+    const int ticks = ticks_per_frame(stepper, scene);
+    if (ticks >= 1 && std::abs(ticks * fixed - scene.dt()) < 1e-9) return {};
+    return text("not applicable: takes steps of %.4f s, which make no frame of %.4f s", fixed,
+                scene.dt());
+}
+
+HardRun run_hard_case(const HardCase& hard, const HardScene& scene, Stepper& stepper,
+                      const std::function<void(int)>& done) {
+    HardMeter meter(hard, scene, stepper);
+    for (int frame = 0; frame < scene.frames() && meter.advance(frame); ++frame) done(frame + 1);
+    return meter.finish();
+}
+
+}  // namespace cloth

@@ -1,0 +1,73 @@
+// hard_cases: scenes on which cloth solvers fail, with every solver. See --help.
+
+#include <cstdio>
+#include <filesystem>
+
+#include "demos/compare/progress.h"
+#include "demos/hard_cases/contest.h"
+#include "demos/hard_cases/options.h"
+#include "demos/hard_cases/report.h"
+
+using namespace cloth;
+
+namespace {
+
+constexpr int soak_frames = 10000;
+
+void list_cases() {
+    for (const HardCase& hard : hard_cases())
+        std::printf("%-20s %s\n", hard.name.c_str(), hard.sentence.c_str());
+}
+
+/// All steppers on one case; those with a row already are left out.
+void run_case(const HardCaseOptions& options, const HardContest& contest, HardReport& report,
+              Progress& line) {
+    std::vector<std::string> left;
+    for (const std::string& stepper : contest.steppers)
+        if (!report.find(contest.hard->name, stepper, contest.frames)) left.push_back(stepper);
+    if (left.empty()) return;
+    const HardScene scene(contest.hard->parts(), contest.frames);
+    std::vector<HardStrip> strips;
+    for (const std::string& stepper : left) {
+        const HardResult result = run_stepper(
+            contest, scene, stepper,
+            [&](int done, int all, const std::string& what) { line.update(done, all, what); });
+        report.add(result.row);
+        strips.push_back(result.strip);
+        std::printf("%s\n", text_line(result.row).c_str());
+        std::fflush(stdout);
+    }
+    if (options.pictures)
+        write_png(options.out + "/" + contest.hard->name + ".png",
+                  draw_hard_case(scene, picture_frames(contest.frames), strips));
+}
+
+void run(const HardCaseOptions& options) {
+    if (options.list) return list_cases();
+    const SolverSettings solver{options.weights, options.threads, nullptr};
+    check_steppers(options.steppers, solver);
+    std::filesystem::create_directories(options.out);
+    HardReport report(options.out + "/hard_cases.json", options.resume);
+    Progress line;
+    for (const std::string& name : options.cases) {
+        const HardCase& hard = hard_case(name);
+        const int frames =
+            scaled_frames(hard, options.frames_scale, options.soak ? soak_frames : 0);
+        run_case(options, {&hard, frames, options.steppers, solver}, report, line);
+    }
+    for (const HardRow& row : report.rows()) std::printf("%s\n", text_line(row).c_str());
+    if (options.markdown) std::printf("\n%s", markdown(report.rows()).c_str());
+    std::printf("%s/hard_cases.json\n", options.out.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        run(parse_hard_case_options(std::vector<std::string>(argv + 1, argv + argc)));
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cloth {
+
+struct HardCaseOptions {
+    std::vector<std::string> cases;     ///< empty: all
+    std::vector<std::string> steppers;  ///< see default_hard_case_steppers()
+    double frames_scale = 1.0;          ///< of each case's frames, 0.001 to 1000
+    bool soak = false;                  ///< the soak cases run for 10,000 frames
+    bool list = false;                  ///< name the cases and stop
+    bool pictures = true;
+    bool markdown = false;  ///< print the table in Markdown, too
+    bool resume = false;    ///< keep the rows that are in the file already
+    int threads = 0;        ///< of the engine; 0: all cores
+    std::string weights;    ///< folder; empty: the committed weights
+    std::string out = "out/hard_cases";
+};
+
+std::string hard_cases_usage();
+
+/// The reference, quasi-Newton with and without sub-steps, XPBD, the network with its safeguard
+/// and alone, Bullet.
+std::vector<std::string> default_hard_case_steppers();
+
+/// @throws UsageError naming the option, or the cases there are
+HardCaseOptions parse_hard_case_options(const std::vector<std::string>& arguments);
+
+}  // namespace cloth

@@ -1,0 +1,87 @@
+// The hard cases are as hard as their names say, and themselves in order.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/proximity.h"
+#include "data/mesh_quality.h"
+#include "demos/hard_cases/hard_cases.h"
+#include "demos/hard_cases/odd_meshes.h"
+#include "demos/hard_cases/pictures.h"
+
+using namespace cloth;
+
+namespace {
+
+std::vector<int> degrees(const Garment& garment) {
+    std::vector<int> degree(static_cast<size_t>(garment.vertex_count()), 0);
+    for (const auto& [a, b] : garment.edges()) {
+        ++degree[static_cast<size_t>(a)];
+        ++degree[static_cast<size_t>(b)];
+    }
+    return degree;
+}
+
+VectorX edge_lengths(const Garment& garment) {
+    VectorX lengths(static_cast<Eigen::Index>(garment.edges().size()));
+    Eigen::Index k = 0;
+    for (const auto& [a, b] : garment.edges())
+        lengths[k++] = (garment.rest().vertices.row(a) - garment.rest().vertices.row(b)).norm();
+    return lengths;
+}
+
+}  // namespace
+
+TEST(HardScenes, BeginOutsideAndKeepPinsAndSurfacesContinuous) {
+    for (const HardCase& hard : hard_cases()) {
+        const HardScene scene(hard.parts(), hard.frames);
+        const ClothState& start = scene.start();
+        ASSERT_EQ(start.x.rows(), scene.garment().vertex_count()) << hard.name;
+        VectorX distance;
+        Proximity().signed_distance(start.x, scene.boundary_of_frame(0), StepEnd::start, distance);
+        EXPECT_GT(distance.minCoeff(), 0.0) << hard.name << " begins inside";
+        for (int frame = 0; frame + 1 < std::min(hard.frames, 60); ++frame) {
+            const Boundary now = scene.boundary_of_frame(frame);
+            const Boundary next = scene.boundary_of_frame(frame + 1);
+            check_obstacles(now);
+            ASSERT_EQ(now.pin_targets.rows(), (long)scene.garment().pins().size()) << hard.name;
+            for (size_t k = 0; k < now.obstacles.size(); ++k) {
+                EXPECT_TRUE(now.obstacles[k].pose1.isApprox(next.obstacles[k].pose0)) << hard.name;
+                EXPECT_TRUE(now.obstacles[k].x1.isApprox(next.obstacles[k].x0)) << hard.name;
+            }
+        }
+    }
+}
+
+TEST(HardScenes, DressHas12000Vertices) {
+    const HardSceneParts parts = hard_case("dress-12000").parts();
+    EXPECT_NEAR(static_cast<double>(parts.garment.vertex_count()), 12000.0, 360.0);
+}
+
+TEST(HardScenes, OddMeshesAreOddAsTheySay) {
+    const Garment mixed("mixed", mixed_triangles(), Fabric::soft_cotton());
+    EXPECT_NEAR(edge_lengths(mixed).minCoeff(), 1e-3, 2e-4);
+    EXPECT_NEAR(edge_lengths(mixed).maxCoeff(), 5e-2, 1e-2);
+    EXPECT_NEAR(smallest_angle(needle_sheet()), 1.0, 0.05);
+    const std::vector<int> uneven =
+        degrees(Garment("uneven", uneven_degrees(), Fabric::soft_cotton()));
+    EXPECT_EQ(*std::min_element(uneven.begin(), uneven.end()), 3);
+    EXPECT_EQ(*std::max_element(uneven.begin(), uneven.end()), 20);
+    EXPECT_EQ(std::count(uneven.begin(), uneven.end(), 20), 1);
+    for (const TriMesh& mesh : {mixed_triangles(), needle_sheet(), uneven_degrees()})
+        EXPECT_GT(face_normals(mesh.vertices, mesh.faces).col(1).minCoeff(), 0.99);
+}
+
+TEST(HardScenes, SurfacesToDrawLieOnTheObstacles) {
+    for (const char* name : {"armpit-pinch", "closing-boxes", "soak-loop", "body-spin"}) {
+        const Boundary boundary = HardScene(hard_case(name).parts(), 1).boundary_of_frame(20);
+        const TriMesh surface = surface_of(boundary.obstacles[0]);
+        Boundary one = boundary;
+        one.obstacles.resize(1);
+        VectorX distance;
+        Proximity().signed_distance(surface.vertices, one, StepEnd::end, distance);
+        EXPECT_LT(distance.cwiseAbs().maxCoeff(), 1e-6) << name;
+    }
+}
