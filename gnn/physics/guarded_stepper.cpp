@@ -66,11 +66,17 @@ void check(const GuardSettings& settings) {
 
 }  // namespace
 
-double relative_motion(const Boundary& boundary, double dt, const ClothState& state) {
-    if (boundary.obstacles.empty() || state.x.rows() == 0) return 0.0;
+double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
+                       const ClothState& state) {
+    if (state.x.rows() == 0) return 0.0;
     const Vec3 shift = dt * state.v.colwise().mean().transpose();
     const Box box = swept_box(state, shift);
     double farthest = 0.0;
+    for (size_t p = 0; p < garment.pins().size(); ++p) {
+        const Vec3 motion =
+            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) - state.x.row(garment.pins()[p]);
+        farthest = std::max(farthest, (motion - shift).norm());
+    }
     for (const Obstacle& obstacle : boundary.obstacles)
         farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
                                           ? mesh_motion(obstacle, box, shift)
@@ -93,7 +99,7 @@ StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState&
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
-    const double parts = relative_motion(boundary, dt, state) / m_settings.max_motion;
+    const double parts = relative_motion(*m_garment, boundary, dt, state) / m_settings.max_motion;
     int substeps = 1;  // powers of two, so that few matrices are factorised
     while (substeps < parts && substeps < m_settings.max_substeps) substeps *= 2;
     substeps = std::min(substeps, m_settings.max_substeps);

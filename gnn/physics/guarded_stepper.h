@@ -9,10 +9,10 @@
 namespace cloth {
 
 struct GuardSettings {
-    double max_motion = 0.1;  ///< steps in which an obstacle near the garment moves farther than
-                              ///< this (m, relative to the garment) are cut, 0.01 to 1. Contacts
-                              ///< are found at the start of a step within the proximity's radius:
-                              ///< what comes from farther away would pass through
+    /// Steps in which an obstacle near the garment, or a pin, moves farther than this (m, relative
+    /// to the garment) are cut, 0.01 to 1. Contacts are found at the start of a step within the
+    /// proximity's radius: what comes from farther away would pass through.
+    double max_motion = 0.1;
     int max_substeps = 16;  ///< 1 to 64
     QuasiNewtonSettings solver = [] {
         QuasiNewtonSettings settings;
@@ -22,8 +22,9 @@ struct GuardSettings {
 };
 
 /// Another stepper wherever it can be trusted, the quasi-Newton solver in sub-steps elsewhere:
-/// where obstacles move too fast for one step, and where the step failed. A jump of the body by
-/// metres (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
+/// where obstacles or pins move too fast for one step, and where the step failed. A jump of the
+/// body by metres (teleport, cut in an animation) is cut into max_substeps parts like any fast
+/// motion.
 ///
 ///     GuardedStepper stepper(garment, std::make_unique<LearnedStepper>(garment, engine));
 ///
@@ -55,8 +56,10 @@ class GuardedStepper : public Stepper {
     long m_guarded_steps = 0;
 };
 
-/// How far (m) the surfaces that may touch the garment during the step move at most, relative to
-/// the garment's mean motion. Meshes: their vertices in the box that garment and motion span.
-double relative_motion(const Boundary& boundary, double dt, const ClothState& state);
+/// How far (m) pins, and surfaces that may touch the garment, move at most during the step,
+/// relative to the garment's mean motion. Meshes: their vertices in the box that garment and motion
+/// span.
+double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
+                       const ClothState& state);
 
 }  // namespace cloth

@@ -94,9 +94,21 @@ TEST_F(Guard, AFastBallCarriesTheSheetInsteadOfPassingThrough) {
 TEST_F(Guard, CoMovingObstaclesAreNotFast) {
     m_state.v.rowwise() = Eigen::RowVector3d(12, 0, 0);
     m_boundary.obstacles = {ball(-0.15, 0.25)};
-    EXPECT_NEAR(relative_motion(m_boundary, dt, m_state), 0.0, 1e-12);
+    EXPECT_NEAR(relative_motion(m_garment, m_boundary, dt, m_state), 0.0, 1e-12);
     m_boundary.obstacles = {ball(5.0, 9.0)};  // fast, but far away
-    EXPECT_EQ(relative_motion(m_boundary, dt, m_state), 0.0);
+    EXPECT_EQ(relative_motion(m_garment, m_boundary, dt, m_state), 0.0);
+}
+
+TEST_F(Guard, PinsThatJumpAreCutToo) {
+    const Garment pinned("sheet", m_garment.rest(), Fabric::soft_cotton(), {0, 3});
+    m_boundary.pin_targets.resize(2, 3);
+    for (int p = 0; p < 2; ++p)
+        m_boundary.pin_targets.row(p) =
+            m_state.x.row(pinned.pins()[p]) + Vec3(0.35, 0, 0).transpose();
+    GuardedStepper guarded(pinned, quasi_newton(pinned));
+    ASSERT_TRUE(guarded.step(m_boundary, dt, m_state).finite);
+    EXPECT_EQ(guarded.last_substeps(), 4);
+    EXPECT_EQ(m_state.x.row(0), m_boundary.pin_targets.row(0));
 }
 
 TEST_F(Guard, AFailedStepIsMadeByTheSolver) {
