@@ -19,9 +19,7 @@ int project_out(const SurfaceContacts& contacts, double distance, Points& x) {
     return moved;
 }
 
-/// Unit direction in which the signed distance grows: away from the closest point outside, towards
-/// it inside, the face's normal on the surface itself.
-static Vec3 outward(const SurfaceContacts& contacts, Eigen::Index i, const Points& x) {
+Vec3 outward(const SurfaceContacts& contacts, Eigen::Index i, const Points& x) {
     const Vec3 away = x.row(i) - contacts.point1.row(i);
     const double length = away.norm();
     if (length < 1e-9) return contacts.normal1.row(i);
@@ -47,6 +45,20 @@ static double max_depth(const VectorX& distance) {
     return distance.size() > 0 ? std::max(0.0, -distance.minCoeff()) : 0.0;
 }
 
+int push_out_rows(Proximity& proximity, const Boundary& boundary, double distance,
+                  int max_iterations, std::vector<int>& rows, Points& x, SurfaceContacts& contacts,
+                  int* moved) {
+    int iterations = 0;
+    keep_too_close(contacts, distance, rows);
+    if (moved) *moved += static_cast<int>(rows.size());
+    for (; !rows.empty() && iterations < max_iterations; ++iterations) {
+        push_to_distance(contacts, distance, rows, x);
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end);
+        keep_too_close(contacts, distance, rows);
+    }
+    return iterations;
+}
+
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
                                   Points& x, SurfaceContacts& contacts, int max_iterations) {
     ResolveReport report;
@@ -55,13 +67,8 @@ ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary
     report.max_depth_before = max_depth(contacts.distance);
     std::vector<int> rows(static_cast<size_t>(x.rows()));
     std::iota(rows.begin(), rows.end(), 0);
-    keep_too_close(contacts, distance, rows);
-    report.moved = static_cast<int>(rows.size());
-    for (; !rows.empty() && report.iterations < max_iterations; ++report.iterations) {
-        push_to_distance(contacts, distance, rows, x);
-        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end);
-        keep_too_close(contacts, distance, rows);
-    }
+    report.iterations = push_out_rows(proximity, boundary, distance, max_iterations, rows, x,
+                                      contacts, &report.moved);
     report.max_depth_after = max_depth(contacts.distance);
     return report;
 }

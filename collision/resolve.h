@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "collision/proximity.h"
 
 namespace cloth {
@@ -12,14 +15,31 @@ namespace cloth {
 /// although it is outside, by no more than it would have sunk below the plane.
 int project_out(const SurfaceContacts& contacts, double distance, Points& x);
 
-/// What resolve_penetration() found and left (m). Vertices beyond the proximity's radius are not
-/// seen.
+/// What resolve_penetration() and SurfaceResolver found and left (m). What is deeper inside a mesh
+/// than the proximity's radius is not seen.
 struct ResolveReport {
     double max_depth_before = 0.0;  ///< deepest vertex inside an obstacle
     double max_depth_after = 0.0;
-    int moved = 0;       ///< vertices that were closer than the distance
-    int iterations = 0;  ///< 0: there were none
+    double max_surface_depth_before = 0.0;  ///< deepest edge midpoint or face centre, once the
+    double max_surface_depth_after = 0.0;   ///< vertices are out; 0: none beyond the allowed depth
+    int moved = 0;                          ///< vertices that were closer than the distance
+    int iterations = 0;                     ///< for the vertices alone; 0: none was closer
+    int surface_iterations = 0;             ///< for edges and faces; 0: none was too deep
+
+    double deepest_after() const { return std::max(max_depth_after, max_surface_depth_after); }
 };
+
+/// Unit direction in which the signed distance of point i of `x` grows: away from its closest point
+/// outside, towards it inside, the face's normal on the surface itself.
+Vec3 outward(const SurfaceContacts& contacts, Eigen::Index i, const Points& x);
+
+/// Moves the vertices in `rows` that are closer than `distance` to that distance, as
+/// resolve_penetration() does. Returns the iterations; `rows` keeps those that are still closer.
+/// @param contacts  the nearest points of `x`, chosen at t + dt, and of the result
+/// @param moved     if not null, grows by the number of vertices that were closer
+int push_out_rows(Proximity& proximity, const Boundary& boundary, double distance,
+                  int max_iterations, std::vector<int>& rows, Points& x, SurfaceContacts& contacts,
+                  int* moved = nullptr);
 
 /// The last safety of a step: queries the surfaces at t + dt and moves every vertex that is closer
 /// than `distance` (m, small: 0 to 1e-3) to that distance from its closest point, again if that
