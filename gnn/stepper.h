@@ -22,7 +22,8 @@ struct StepReport {
     double residual = 0.0;         ///< |gradient| of the incremental potential after the step, over
                                    ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
     bool converged = false;        ///< the stepper's own tolerance was met
-    double max_penetration = 0.0;  ///< deepest vertex inside an obstacle after the step (m)
+    double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
+                                   ///< that is not pinned, edge midpoint or face centre
     bool finite = true;            ///< false: the state was left as it was before the step
     StageTimes times;
 };

@@ -6,7 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "collision/resolve.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 
@@ -53,6 +52,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_settings(settings),
       m_graph(build_cloth_graph(garment, m_predictor->config().graph_settings())),
       m_proximity(settings.proximity),
+      m_resolver(garment),
       m_potential(garment, settings.potential),
       m_solver(garment, refinement(settings)),
       m_builder(garment, m_graph, m_predictor->config().features) {
@@ -122,11 +122,11 @@ void LearnedStepper::refine(StepReport& report) {
 bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& state,
                             StepReport& report) {
     if (!m_x.allFinite()) return false;
-    const ResolveReport resolved =
-        resolve_penetration(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     place_pins(*m_garment, boundary, m_x);
+    const ResolveReport resolved =
+        m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     if (!m_x.allFinite()) return false;
-    report.max_penetration = resolved.max_depth_after;
+    report.max_penetration = resolved.deepest_after();
     state.v = (m_x - state.x) / dt;
     state.x = m_x;
     state.time += dt;

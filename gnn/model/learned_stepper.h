@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "collision/proximity.h"
+#include "collision/resolve_surface.h"
 #include "gnn/model/predictor.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
@@ -76,6 +76,7 @@ class LearnedStepper : public Stepper {
     LearnedStepperSettings m_settings;
     ClothGraph m_graph;
     Proximity m_proximity;
+    SurfaceResolver m_resolver;
     IncrementalPotential m_potential;
     QuasiNewton m_solver;
     FeatureBuilder m_builder;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "collision/resolve.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 
@@ -31,7 +30,8 @@ ImplicitStepper::ImplicitStepper(const Garment& garment, const ImplicitSettings&
       m_settings(settings),
       m_potential(garment, settings.potential),
       m_newton(garment, settings),
-      m_proximity(settings.proximity) {
+      m_proximity(settings.proximity),
+      m_resolver(garment) {
     if (settings.contact_updates < 0 || settings.contact_updates > 10)
         throw ArgumentError("ImplicitSettings.contact_updates",
                             std::to_string(settings.contact_updates) + " is out of range",
@@ -91,14 +91,17 @@ void ImplicitStepper::choose_start(const Boundary& boundary, const ClothState& s
 }
 
 void ImplicitStepper::finish(const Boundary& boundary, StepReport& report) {
+    place_pins(*m_garment, boundary, m_x);
     if (boundary.obstacles.empty()) return;
     const Clock::time_point start = Clock::now();
     if (m_settings.safety_distance >= 0.0) {
-        resolve_penetration(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts);
-        place_pins(*m_garment, boundary, m_x);
+        report.max_penetration =
+            m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts)
+                .deepest_after();
+    } else {
+        m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
+        report.max_penetration = std::max(0.0, -m_distance.minCoeff());
     }
-    m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
-    report.max_penetration = std::max(0.0, -m_distance.minCoeff());
     report.times.contact = milliseconds_since(start);
 }
 

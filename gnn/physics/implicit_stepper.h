@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/proximity.h"
+#include "collision/resolve_surface.h"
 #include "gnn/physics/newton.h"
 #include "gnn/stepper.h"
 
@@ -48,6 +48,7 @@ class ImplicitStepper : public Stepper {
     IncrementalPotential m_potential;
     Newton m_newton;
     Proximity m_proximity;
+    SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     VectorX m_distance;
     Points m_x, m_v;  ///< |V| x 3

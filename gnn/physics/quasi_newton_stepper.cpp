@@ -2,7 +2,6 @@
 
 #include <chrono>
 
-#include "collision/resolve.h"
 #include "gnn/physics/guess.h"
 
 namespace cloth {
@@ -39,7 +38,8 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
     : m_garment(&garment),
       m_potential(garment, settings.potential),
       m_solver(garment, settings),
-      m_proximity(proximity) {
+      m_proximity(proximity),
+      m_resolver(garment) {
 }
 
 std::string QuasiNewtonStepper::name() const {
@@ -81,10 +81,10 @@ void QuasiNewtonStepper::find_contacts(const Boundary& boundary, const ClothStat
 }
 
 void QuasiNewtonStepper::resolve(const Boundary& boundary, StepReport& report) {
-    const ResolveReport resolved =
-        resolve_penetration(m_proximity, boundary, safety_distance, m_x, m_contacts);
-    report.max_penetration = resolved.max_depth_after;
     place_pins(*m_garment, boundary, m_x);
+    const ResolveReport resolved =
+        m_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
+    report.max_penetration = resolved.deepest_after();
 }
 
 }  // namespace cloth

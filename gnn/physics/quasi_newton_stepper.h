@@ -1,13 +1,13 @@
 #pragma once
 
-#include "collision/proximity.h"
+#include "collision/resolve_surface.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
 
 /// A fixed number of quasi-Newton iterations per step, from the projected extrapolation: nearest
-/// surface points, guess, iterations, and a last safety that leaves no vertex inside an obstacle.
+/// surface points, guess, iterations, and a last safety that leaves nothing inside an obstacle.
 ///
 ///     QuasiNewtonSettings settings;
 ///     settings.iterations = 5;
@@ -34,6 +34,7 @@ class QuasiNewtonStepper : public Stepper {
     IncrementalPotential m_potential;
     QuasiNewton m_solver;
     Proximity m_proximity;
+    SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     Points m_x, m_v;  ///< |V| x 3: the new positions and velocities
 };

@@ -7,7 +7,6 @@
 #include <limits>
 #include <string>
 
-#include "collision/resolve.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 
@@ -68,7 +67,8 @@ XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
       m_stretch(stretch_springs(garment), inverse_masses(garment), settings.relaxation),
       m_bending(bending_springs(garment, settings.bending_angle), inverse_masses(garment),
                 settings.relaxation),
-      m_proximity(proximity) {
+      m_proximity(proximity),
+      m_resolver(garment) {
 }
 
 std::string XpbdStepper::name() const {
@@ -182,10 +182,10 @@ void XpbdStepper::move_pins(const Boundary& boundary, const Points& x0, double p
 
 /// The last safety; vertices that it moved keep no velocity into the surface.
 void XpbdStepper::resolve(const Boundary& boundary, double dt, StepReport& report) {
-    if (!boundary.obstacles.empty())
-        report.max_penetration =
-            resolve_penetration(m_proximity, boundary, safety_distance, m_x, m_contacts)
-                .max_depth_after;
+    place_pins(*m_garment, boundary, m_x);
+    const ResolveReport resolved =
+        m_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
+    report.max_penetration = resolved.deepest_after();
     for (size_t k = 0; k < m_contacts.obstacle.size(); ++k) {
         const Eigen::Index i = static_cast<Eigen::Index>(k);
         if (!m_contacts.has(i) || m_x.row(i) == m_p.row(i).head<3>()) continue;
@@ -194,7 +194,6 @@ void XpbdStepper::resolve(const Boundary& boundary, double dt, StepReport& repor
         const double inward = normal.dot(velocity.transpose() - m_contacts.velocity(i, dt));
         if (inward < 0.0) velocity -= inward * normal.transpose();
     }
-    place_pins(*m_garment, boundary, m_x);
 }
 
 }  // namespace cloth

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/proximity.h"
+#include "collision/resolve_surface.h"
 #include "gnn/physics/distance_constraints.h"
 #include "gnn/physics/riding_planes.h"
 #include "gnn/stepper.h"
@@ -31,7 +31,7 @@ struct XpbdSettings {
 ///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
 ///
 /// Obstacles are queried once per step and ride along as planes; pins move linearly; a last safety
-/// leaves no vertex inside an obstacle. Accepts any time step.
+/// leaves nothing inside an obstacle. Accepts any time step.
 ///
 /// ClothState has the mean velocity over a step, which lags behind the velocity at its end, from
 /// which substeps go on. A state whose positions are those this stepper returned last goes on with
@@ -65,6 +65,7 @@ class XpbdStepper : public Stepper {
     DistanceConstraints m_stretch, m_bending;
     double m_prepared_dt = 0.0;  ///< time step of the constraints (s)
     Proximity m_proximity;
+    SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     RidingPlanes m_planes;
     PaddedPoints m_p, m_w, m_before;  ///< of the substep: positions, velocities, start

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <string>
 
+#include "collision/metrics.h"
 #include "collision/proximity.h"
 #include "gnn/stepper.h"
 #include "tests/gnn/physics/solver_scenes.h"
@@ -238,7 +239,11 @@ TEST_P(StepperContract, NothingEndsInsideAnObstacle) {
         VectorX distance;
         Proximity().signed_distance(scene.state.x, scene.boundary, StepEnd::end, distance);
         EXPECT_GE(distance.minCoeff(), -1e-3) << "step " << k;
-        EXPECT_NEAR(report.max_penetration, std::max(0.0, -distance.minCoeff()), 1e-6);
+        // Edges and faces that are not deeper than is allowed are reported as not inside.
+        Proximity proximity;
+        const double depth =
+            measure_penetration(proximity, scene.boundary, scene.garment, scene.state.x).max_depth;
+        EXPECT_NEAR(report.max_penetration, depth, 7e-4) << "step " << k;
     }
 }
 
