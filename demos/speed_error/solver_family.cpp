@@ -1,7 +1,5 @@
 #include "demos/speed_error/solver_family.h"
 
-#include "gnn/model/learned_stepper.h"
-
 namespace cloth {
 namespace {
 
@@ -25,9 +23,7 @@ SolverFamily network_family(const std::string& name) {
     const std::optional<std::string> torch = after(name, "torch-");
     const std::string network = torch.value_or(name);
     const size_t plus = network.find('+');
-    const std::string refine = plus == std::string::npos
-                                   ? "+" + std::to_string(Refinement{}.iterations)
-                                   : network.substr(plus);
+    const std::string refine = plus == std::string::npos ? "shipped" : network.substr(plus);
     return {Kind::network, network.substr(0, plus) + (torch ? ", LibTorch" : ""), refine,
             "iterations"};
 }
@@ -54,9 +50,11 @@ std::optional<NetworkFacts> network_facts(const std::string& solver,
     if (family.kind != Kind::network) return std::nullopt;
     const std::optional<std::string> torch = after(solver, "torch-");
     const std::string network = torch.value_or(solver);
-    const std::string file = weights_file(network.substr(0, network.find('+')), settings.weights);
-    return NetworkFacts{torch ? "libtorch" : "engine", Weights::load(file).config.width,
-                        std::stoi(family.setting)};
+    const size_t plus = network.find('+');
+    const std::string file = weights_file(network.substr(0, plus), settings.weights);
+    std::optional<int> refine;
+    if (plus != std::string::npos) refine = std::stoi(network.substr(plus + 1));
+    return NetworkFacts{torch ? "libtorch" : "engine", Weights::load(file).config.width, refine};
 }
 
 }  // namespace cloth

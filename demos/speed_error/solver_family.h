@@ -12,7 +12,7 @@ struct SolverFamily {
     enum class Kind { bullet, xpbd, quasi_newton, newton, network };
     Kind kind;
     std::string name;     ///< for a legend: "quasi-Newton", "Bullet, 1/60 s", "fast, LibTorch"
-    std::string setting;  ///< for a point: "3", "+10"
+    std::string setting;  ///< for a point: "3", "+10", "shipped"
     std::string counts;   ///< what the setting is a number of: "iterations"
 };
 
@@ -21,9 +21,9 @@ SolverFamily solver_family(const std::string& solver);
 
 /// What a network is run by and is.
 struct NetworkFacts {
-    std::string backend;  ///< engine, libtorch
-    int width;            ///< of the latents
-    int refine;           ///< quasi-Newton iterations after it
+    std::string backend;        ///< engine, libtorch
+    int width;                  ///< of the latents
+    std::optional<int> refine;  ///< quasi-Newton iterations after it; none: as shipped
 };
 
 /// Nothing for solvers without a network. @throws UsageError, LoadError as make_solver() does

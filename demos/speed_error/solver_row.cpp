@@ -80,7 +80,8 @@ ordered_json to_json(const SolverRow& row) {
     json["solver"] = row.solver;
     json["backend"] = network ? ordered_json(row.network->backend) : ordered_json();
     json["width"] = network ? ordered_json(row.network->width) : ordered_json();
-    json["refine"] = network ? ordered_json(row.network->refine) : ordered_json();
+    json["refine"] =
+        network && row.network->refine ? ordered_json(*row.network->refine) : ordered_json();
     json["threads"] = row.threads;
     json["frames"] = row.frames;
     json["ms_median"] = rounded(row.ms_median);

@@ -81,7 +81,7 @@ TEST(SolverFamily, NamesSayFamilyAndSetting) {
     EXPECT_EQ(solver_family("bullet-5x1").setting, "5");
     EXPECT_EQ(solver_family("reference").name, solver_family("newton-3").name);
     EXPECT_EQ(solver_family("quasi-newton-30").setting, "30");
-    EXPECT_EQ(solver_family("fast").setting, "+10");
+    EXPECT_EQ(solver_family("fast").setting, "shipped");
     EXPECT_EQ(solver_family("torch-fast_16+3").name, "fast_16, LibTorch");
     EXPECT_EQ(solver_family("torch-fast_16+3").setting, "+3");
 }
