@@ -19,7 +19,15 @@ using Pair = std::pair<std::string, std::string>;  ///< case, stepper
 const char* const released =
     "too few iterations for one huge step: cloth that is let go overshoots and is torn";
 
+const char* const torn_needles =
+    "lifting a needle's edge out of the obstacle stretches its neighbours";
+
 const std::map<Pair, std::string> known_failures = {
+    {{"needles", "quasi-newton-10"}, torn_needles},
+    {{"needles", "fast"}, torn_needles},
+    {{"soak-rest", "quasi-newton-10"},
+     "cloth over a table's edge trembles, 0.2 mm per frame: contact pulls it in, the surface "
+     "resolver lifts it out"},
     {{"teleport", "quasi-newton-10"}, released},
     {{"stretch-3", "quasi-newton-10"}, released},
     {{"stretch-3", "fast"}, released},
