@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "data/errors.h"
@@ -149,6 +150,7 @@ void BulletObstacles::refreshParts(Track& track, const btCollisionObject& object
     if (track.step >= 0 && signature == track.signature) return;
     track.signature = signature;
     track.parts = partsOfShape(shape);
+    track.distances.clear();
     if (track.parts.empty() && shape.getShapeType() != EMPTY_SHAPE_PROXYTYPE)
         m_messages.push_back(std::string("collision shape ") + shape.getName() +
                              " has no surface that cloth could touch: it is passed through. "
@@ -246,6 +248,30 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
             append(animation, softness * object->getFriction(), span, obstacles);
     sortByGeometry(obstacles);
     return obstacles;
+}
+
+std::vector<DynamicObstacle> BulletObstacles::dynamicNear(const btSoftBody& body, const Vec3& low,
+                                                          const Vec3& high, double time) {
+    std::vector<DynamicObstacle> dynamic;
+    for (const btCollisionObject* object : objectsIn(body, low, high)) {
+        const btRigidBody* rigid = btRigidBody::upcast(object);
+        if (!rigid || rigid->isStaticOrKinematicObject() || !(rigid->getInvMass() > 0)) continue;
+        Track& track = update(*object);
+        if (track.distances.empty())
+            for (const ShapePart& part : track.parts) track.distances.emplace_back(part);
+        // The world owns the body and may push it; cloth only hands on what the world would do.
+        dynamic.push_back({const_cast<btRigidBody*>(rigid),
+                           between(track.begin, track.end, time / m_h).inverse(),
+                           &track.distances});
+    }
+    return dynamic;
+}
+
+double DynamicObstacle::distance(const Vec3& point, double radius) const {
+    const Vec3 local = inverse * point;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const PartDistance& part : *parts) nearest = std::min(nearest, part.at(local, radius));
+    return nearest;
 }
 
 std::vector<std::string> BulletObstacles::takeMessages() {

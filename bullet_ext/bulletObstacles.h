@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "bullet_ext/bulletShapes.h"
+#include "bullet_ext/partDistance.h"
 
 class btCollisionObject;
+class btRigidBody;
 class btSoftBody;
 
 namespace cloth {
@@ -24,6 +26,16 @@ struct AnimatedMesh {
     Points x0;                           ///< vertices now (|V| x 3, m, world frame)
     Points x1;                           ///< vertices after `duration` (|V| x 3, m, world frame)
     double duration = 0.0;               ///< from x0 to x1 (s); 0: one world step
+};
+
+/// A rigid body that cloth can push.
+struct DynamicObstacle {
+    btRigidBody* body = nullptr;
+    Pose inverse = Pose::Identity();  ///< from the world to the body, where asked for
+    const std::vector<PartDistance>* parts = nullptr;  ///< of its shape; valid in this world step
+
+    /// Signed distance (m) of a point of the world; +inf if it is farther than `radius`.
+    double distance(const Vec3& point, double radius) const;
 };
 
 /// Watches the collision objects of a Bullet world and describes them as obstacles.
@@ -47,6 +59,10 @@ class BulletObstacles {
     std::vector<Obstacle> near(const btSoftBody& body, const Vec3& low, const Vec3& high,
                                const TimeSpan& span);
 
+    /// The dynamic bodies among them, as they are at `time` (s, from the start of the world step).
+    std::vector<DynamicObstacle> dynamicNear(const btSoftBody& body, const Vec3& low,
+                                             const Vec3& high, double time);
+
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
 
@@ -57,10 +73,11 @@ class BulletObstacles {
     struct Track {
         size_t signature = 0;
         std::vector<ShapePart> parts;
-        long step = -1;          ///< world step of the last update
-        Pose begin, end;         ///< at both ends of the present world step
-        btTransform target;      ///< where Bullet says the object is
-        double remaining = 0.0;  ///< time left to reach the target (s)
+        std::vector<PartDistance> distances;  ///< of the parts; made when the body is dynamic
+        long step = -1;                       ///< world step of the last update
+        Pose begin, end;                      ///< at both ends of the present world step
+        btTransform target;                   ///< where Bullet says the object is
+        double remaining = 0.0;               ///< time left to reach the target (s)
     };
     struct Animation {
         AnimatedMesh mesh;

@@ -21,6 +21,19 @@ inline btVector3 toBullet(const Vec3& v) {
             static_cast<btScalar>(v.z())};
 }
 
+inline Eigen::Matrix3d toMatrix(const btMatrix3x3& m) {
+    Eigen::Matrix3d matrix;
+    for (int r = 0; r < 3; ++r) matrix.row(r) = toVec3(m[r]);
+    return matrix;
+}
+
+/// crossMatrix(r) * v is r x v.
+inline Eigen::Matrix3d crossMatrix(const Vec3& r) {
+    Eigen::Matrix3d matrix;
+    matrix << 0, -r.z(), r.y(), r.z(), 0, -r.x(), -r.y(), r.x(), 0;
+    return matrix;
+}
+
 /// Bullet's frame in doubles, its rotation made orthonormal again.
 inline Pose toPose(const btTransform& t) {
     const btQuaternion q = t.getRotation();

@@ -164,12 +164,17 @@ bool isCloth(const btSoftBody& body) {
            body.m_joints.size() == 0 && cfg.kPR == 0 && cfg.kVC == 0 && !pose;
 }
 
+bool isHardAnchor(const btSoftBody::Anchor& anchor) {
+    return anchor.m_influence >= btScalar(0.999);
+}
+
 std::vector<int> pinnedNodes(const btSoftBody& body) {
     std::vector<int> pins;
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (!(body.m_nodes[i].m_im > 0)) pins.push_back(i);
     for (int a = 0; a < body.m_anchors.size(); ++a)
-        pins.push_back(nodeIndex(body, body.m_anchors[a].m_node));
+        if (isHardAnchor(body.m_anchors[a]))
+            pins.push_back(nodeIndex(body, body.m_anchors[a].m_node));
     std::sort(pins.begin(), pins.end());
     pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
     return pins;

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <BulletSoftBody/btSoftBody.h>
+
 #include <string>
 #include <vector>
 
 #include "bullet_ext/bulletTypes.h"
 #include "data/garment.h"
-
-class btSoftBody;
 
 namespace cloth {
 
@@ -17,7 +17,10 @@ std::string softBodyName(const btSoftBody& body);
 /// volume conservation or pose matching.
 bool isCloth(const btSoftBody& body);
 
-/// Nodes that something else moves: zero inverse mass, or anchored to a rigid body. Sorted.
+/// Anchors of influence 1 are pins that follow their body; weaker ones pull, see softAnchors.h.
+bool isHardAnchor(const btSoftBody::Anchor& anchor);
+
+/// Nodes that something else moves: zero inverse mass, or held by a hard anchor. Sorted.
 std::vector<int> pinnedNodes(const btSoftBody& body);
 
 /// Positions of the nodes (|V| x 3, m).

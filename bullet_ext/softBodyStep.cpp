@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ext/softAnchors.h"
 #include "bullet_ext/softBodyGarment.h"
 
 namespace cloth {
@@ -43,7 +44,10 @@ Box boxAhead(const ClothState& state, double time, double reach) {
 
 SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
                            std::unique_ptr<Stepper> stepper)
-    : m_body(body), m_garment(std::move(garment)), m_stepper(std::move(stepper)) {
+    : m_body(body),
+      m_garment(std::move(garment)),
+      m_stepper(std::move(stepper)),
+      m_reactions(body) {
     const int count = body.m_nodes.size();
     m_shown.x = nodePositions(body);
     m_shown.v.resize(count, 3);
@@ -77,6 +81,7 @@ SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, do
     }
     showTick();
     writeNodes();
+    m_reactions.apply(m_h, obstacles.dynamicNear(m_body, box.low, box.high, h));
     m_tick.begin -= m_h;
     return result;
 }
@@ -172,19 +177,20 @@ Points SoftBodyStep::pinsAt(double time) const {
     return m_pins_after + std::min(rest, 1.0) * m_pins_drift;
 }
 
-Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, double reach) {
+Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, const Vec3& low,
+                                      const Vec3& high) {
     Boundary boundary;
     boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
     boundary.pin_targets = pinsAt(m_tick.begin + m_tick.length);
-    const Box box = boxAhead(m_tick.from, m_tick.length, reach);
     boundary.obstacles = obstacles.near(
-        m_body, box.low, box.high, {m_tick.begin / m_time_scale, m_tick.length / m_time_scale});
+        m_body, low, high, {m_tick.begin / m_time_scale, m_tick.length / m_time_scale});
     if (!m_impulse.isZero(0.0)) {
         boundary.accelerations = m_impulse / m_tick.length;
         for (int i = 0; i < m_body.m_nodes.size(); ++i)
             boundary.accelerations.row(i) *= static_cast<double>(m_body.m_nodes[i].m_im);
         m_impulse.setZero();
     }
+    pullSoftAnchors(m_body, m_tick.from, m_tick.length, m_h, boundary.accelerations);
     return boundary;
 }
 
@@ -207,12 +213,17 @@ void SoftBodyStep::startTick(bool first_of_step) {
 
 bool SoftBodyStep::runTick(BulletObstacles& obstacles, double reach) {
     const ClothState& from = m_tick.from;
-    const Boundary boundary = boundaryOfTick(obstacles, reach);
+    const Box box = boxAhead(from, m_tick.length, reach);
+    const Boundary boundary = boundaryOfTick(obstacles, box.low, box.high);
     ClothState to = from;
     m_report = m_stepper->step(boundary, m_tick.length, to);
     m_report.finite = m_report.finite && to.x.allFinite() && to.v.allFinite();
     m_tick.to = m_report.finite ? std::move(to) : from;
     m_tick.to.time = from.time + m_tick.length;
+    if (m_report.finite)
+        m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_tick.to, m_tick.length,
+                             obstacles.dynamicNear(m_body, box.low, box.high,
+                                                   (m_tick.begin + m_tick.length) / m_time_scale)});
     const double damping = static_cast<double>(m_body.m_cfg.kDP);
     if (damping > 0.0) m_tick.to.v *= std::pow(1.0 - damping, m_tick.length / m_h);
     return m_report.finite;
@@ -239,8 +250,9 @@ void SoftBodyStep::writeNodes() {
         float* written = &m_written[static_cast<size_t>(i) * 6];
         node.m_x = toBullet(Vec3(m_shown.x.row(i)));
         node.m_vn = node.m_v;
-        // The velocity of a pin is the user's command and stays, as in Bullet.
-        if (!pinned[static_cast<size_t>(i)]) node.m_v = toBullet(Vec3(m_shown.v.row(i)));
+        // The velocity of a node without mass is the user's command and stays, as in Bullet.
+        if (!pinned[static_cast<size_t>(i)] || node.m_im > 0)
+            node.m_v = toBullet(Vec3(m_shown.v.row(i)));
         store(node.m_x, written);
         store(node.m_v, written + 3);
     }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bullet_ext/bulletObstacles.h"
+#include "bullet_ext/clothReactions.h"
 #include "gnn/stepper.h"
 
 class btSoftBody;
@@ -22,6 +23,7 @@ namespace cloth {
 ///
 /// Whatever the user does to nodes between steps counts: moved or pushed free nodes start a new
 /// tick from what the nodes say, pinned nodes are followed, node forces and wind act as impulses.
+/// Dynamic rigid bodies get what they gave to the cloth, see ClothReactions.
 class SoftBodyStep {
  public:
     SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
@@ -30,6 +32,8 @@ class SoftBodyStep {
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const StepReport& lastReport() const { return m_report; }
+    /// Impulse that dynamic rigid bodies got from the cloth in the last world step (N s).
+    const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }
 
     struct Result {
         int steps = 0;           ///< steps that the stepper made, 0 within a tick
@@ -55,7 +59,7 @@ class SoftBodyStep {
     void takeForces();
     void takePins();
     Points pinsAt(double time) const;
-    Boundary boundaryOfTick(BulletObstacles& obstacles, double reach);
+    Boundary boundaryOfTick(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
     void startTick(bool first_of_step);
     bool runTick(BulletObstacles& obstacles, double reach);
     void showTick();
@@ -65,6 +69,7 @@ class SoftBodyStep {
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
     StepReport m_report;
+    ClothReactions m_reactions;
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
     Tick m_tick;

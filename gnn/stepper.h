@@ -48,6 +48,14 @@ class Stepper {
     /// @param dt        time step (s)
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
+
+    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3, N);
+    /// they sum to zero. What they leave of a step's change of momentum came from outside.
+    /// @return  false, `forces` untouched: this stepper does not know
+    virtual bool internal_forces(const Points& x, Points& forces) const {
+        (void)x, (void)forces;
+        return false;
+    }
 };
 
 }  // namespace cloth

@@ -59,6 +59,10 @@ class LearnedStepper : public Stepper {
     std::string name() const override;
     double fixed_dt() const override { return m_predictor->config().dt; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override {
+        m_potential.internal_forces(x, forces);
+        return true;
+    }
 
     bool last_step_fell_back() const { return m_fell_back; }
 

@@ -39,6 +39,9 @@ class GuardedStepper : public Stepper {
     std::string name() const override { return m_inner->name(); }
     double fixed_dt() const override { return m_inner->fixed_dt(); }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override {
+        return m_inner->internal_forces(x, forces);
+    }
 
     /// Sub-steps of the last step; 1: the inner stepper's.
     int last_substeps() const { return m_last_substeps; }

@@ -36,6 +36,10 @@ class ImplicitStepper : public Stepper {
 
     std::string name() const override { return "reference"; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override {
+        m_potential.internal_forces(x, forces);
+        return true;
+    }
 
  private:
     void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);

@@ -134,6 +134,13 @@ void IncrementalPotential::elastic_gradient(const Points& x, Points& gradient) c
     mask_pins(gradient);
 }
 
+void IncrementalPotential::internal_forces(const Points& x, Points& forces) const {
+    forces.setZero(x.rows(), 3);
+    m_strain.add_gradient(x, forces);
+    m_bending.add_gradient(x, forces);
+    forces = -forces;
+}
+
 void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
                                    HessianKind kind) const {
     m_pattern->reset(hessian);

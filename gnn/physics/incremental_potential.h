@@ -69,6 +69,9 @@ class IncrementalPotential {
     /// Gradient of strain + bending only (|V| x 3, N): the force features' ingredient.
     void elastic_gradient(const Points& x, Points& gradient) const;
 
+    /// Forces of strain and bending (|V| x 3, N), minus the gradient; on pinned vertices too.
+    void internal_forces(const Points& x, Points& forces) const;
+
     /// Norm of inertia's and gravity's forces at x_t over the free vertices (N): residual's scale.
     double force_scale() const { return m_force_scale; }
 

@@ -25,6 +25,10 @@ class QuasiNewtonStepper : public Stepper {
     /// "quasi-newton-K" with K iterations.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override {
+        m_potential.internal_forces(x, forces);
+        return true;
+    }
 
  private:
     void find_contacts(const Boundary& boundary, const ClothState& state);

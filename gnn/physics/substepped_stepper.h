@@ -26,6 +26,9 @@ class SubsteppedStepper : public Stepper {
     /// The inner stepper's name, "x" and the number of sub-steps.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override {
+        return m_stepper->internal_forces(x, forces);
+    }
 
  private:
     void place(const Boundary& boundary, int substep);

@@ -7,40 +7,14 @@
 #include <limits>
 
 #include "bullet_ext/garmentSoftBody.h"
-#include "gnn/physics/quasi_newton_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
+#include "tests/bullet_ext/physical_steppers.h"
 #include "tests/bullet_ext/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;
 
 namespace {
-
-/// A stepper with its own time step, as learned ones have.
-class Ticking : public Stepper {
- public:
-    Ticking(std::unique_ptr<Stepper> inner, double dt) : m_inner(std::move(inner)), m_dt(dt) {}
-    std::string name() const override { return m_inner->name(); }
-    double fixed_dt() const override { return m_dt; }
-    StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
-        return m_inner->step(boundary, dt, state);
-    }
-
- private:
-    std::unique_ptr<Stepper> m_inner;
-    double m_dt;
-};
-
-/// Quasi-Newton steps at the world's rate, or at a rate of their own if fixed_dt is not zero.
-StepperFactory quasi_newton(double fixed_dt = 0.0) {
-    return [=](const Garment& garment) -> std::unique_ptr<Stepper> {
-        QuasiNewtonSettings settings;
-        settings.iterations = 15;
-        auto stepper = std::make_unique<QuasiNewtonStepper>(garment, settings);
-        if (fixed_dt == 0.0) return stepper;
-        return std::make_unique<Ticking>(std::move(stepper), fixed_dt);
-    };
-}
 
 /// A level floor of 4 m x 4 m at height 0 as a triangle mesh.
 struct Floor {

@@ -1,0 +1,258 @@
+#include "bullet_ext/clothReactions.h"
+
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+#include <BulletSoftBody/btSoftBody.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "bullet_ext/softBodyGarment.h"
+
+namespace cloth {
+
+namespace {
+
+// Contacts keep cloth at 4 mm; points a little farther carry none of the load.
+constexpr double kTouch = 5e-3;  // m
+
+/// kg; 0 for nodes that nothing can move
+double massOf(const btSoftBody::Node& node) {
+    return node.m_im > 0 ? 1.0 / static_cast<double>(node.m_im) : 0.0;
+}
+
+bool isDynamic(const btRigidBody& body) {
+    return body.getInvMass() > 0 && !body.isStaticOrKinematicObject();
+}
+
+Vec3 centreOf(const btRigidBody& body) {
+    return toVec3(body.getCenterOfMassPosition());
+}
+
+/// Bodies that cannot turn count as ones that hardly can.
+Eigen::Matrix<double, 6, 6> massMatrix(const btRigidBody& body) {
+    constexpr double kLeast = 1e-9;
+    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+    const double inverse = std::max(static_cast<double>(body.getInvMass()), kLeast);
+    matrix.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / inverse;
+    const Vec3 moments = toVec3(body.getInvInertiaDiagLocal()).cwiseMax(kLeast).cwiseInverse();
+    const Eigen::Matrix3d turn = toMatrix(body.getCenterOfMassTransform().getBasis());
+    matrix.bottomRightCorner<3, 3>() = turn * moments.asDiagonal() * turn.transpose();
+    return matrix;
+}
+
+/// Node masses over the garment's: how much heavier the user's cloth is than its fabric.
+double massRatio(const btSoftBody& body, const Garment& garment) {
+    double of_nodes = 0.0, of_garment = 0.0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (body.m_nodes[i].m_im > 0) {
+            of_nodes += massOf(body.m_nodes[i]);
+            of_garment += garment.masses()[i];
+        }
+    return of_garment > 0.0 ? of_nodes / of_garment : 0.0;
+}
+
+/// Cloth spins no body faster than this per tick, whatever the lever: pins are extrapolated over a
+/// tick, and farther than that the extrapolation feeds the spin.
+Vec3 limitedTurn(const Vec3& turning, const Vec3& change, double length) {
+    constexpr double kTurn = 0.3;  // rad
+    const double limit = std::max(turning.norm(), kTurn / length);
+    const double speed = (turning + change).norm();
+    return speed > limit ? Vec3((limit / speed) * (turning + change) - turning) : change;
+}
+
+/// Whether all that holds the cloth can be moved by it.
+bool floatsFreely(const btSoftBody& body, const ClothTick& tick) {
+    for (int pin : tick.garment.pins())
+        if (!(body.m_nodes[pin].m_im > 0)) return false;
+    for (int a = 0; a < body.m_anchors.size(); ++a)
+        if (!isDynamic(*body.m_anchors[a].m_body)) return false;
+    size_t parts = 0;
+    for (const DynamicObstacle& obstacle : tick.near) parts += obstacle.parts->size();
+    return parts == tick.boundary.obstacles.size();
+}
+
+}  // namespace
+
+void ClothReactions::collect(const ClothTick& tick) {
+    for (auto& entry : m_accounts) {
+        entry.second.taken.setZero();
+        entry.second.nodes.clear();
+        entry.second.mass = 0.0;
+        entry.second.middle.setZero();
+    }
+    findHolders(tick);
+    const bool held = std::any_of(m_holder.begin(), m_holder.end(),
+                                  [](const btRigidBody* body) { return body != nullptr; });
+    if (held) findImpulses(tick);
+    if (held && floatsFreely(m_body, tick)) shareRest();
+    for (auto it = m_accounts.begin(); it != m_accounts.end();) {
+        settle(tick, *it->first, it->second);
+        const bool done = it->second.nodes.empty() && it->second.planned.norm() < 1e-12;
+        it = done ? m_accounts.erase(it) : std::next(it);
+    }
+}
+
+/// The dynamic body that each node is anchored to or touches at the end of the tick.
+void ClothReactions::findHolders(const ClothTick& tick) {
+    const size_t count = static_cast<size_t>(tick.to.x.rows());
+    m_holder.assign(count, nullptr);
+    m_distance.assign(count, std::numeric_limits<double>::infinity());
+    const Points& x = tick.to.x;
+    const auto touch = [&](const DynamicObstacle& obstacle, const Vec3& point,
+                           std::initializer_list<int> nodes) {
+        const double distance = obstacle.distance(point, kTouch);
+        if (!(distance <= kTouch)) return;
+        for (int i : nodes)
+            if (distance < m_distance[static_cast<size_t>(i)]) {
+                m_distance[static_cast<size_t>(i)] = distance;
+                m_holder[static_cast<size_t>(i)] = obstacle.body;
+            }
+    };
+    for (const DynamicObstacle& obstacle : tick.near) {
+        for (int i = 0; i < static_cast<int>(count); ++i) touch(obstacle, x.row(i), {i});
+        for (const auto& [a, b] : tick.garment.edges())
+            touch(obstacle, 0.5 * (x.row(a) + x.row(b)), {a, b});
+        const Faces& faces = tick.garment.rest().faces;
+        for (Eigen::Index f = 0; f < faces.rows(); ++f)
+            touch(obstacle, (x.row(faces(f, 0)) + x.row(faces(f, 1)) + x.row(faces(f, 2))) / 3.0,
+                  {faces(f, 0), faces(f, 1), faces(f, 2)});
+    }
+    for (int pin : tick.garment.pins()) m_holder[static_cast<size_t>(pin)] = nullptr;
+    for (int a = 0; a < m_body.m_anchors.size(); ++a) {
+        const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
+        if (isHardAnchor(anchor) && anchor.m_node->m_im > 0 && isDynamic(*anchor.m_body))
+            m_holder[static_cast<size_t>(anchor.m_node - &m_body.m_nodes[0])] = anchor.m_body;
+    }
+}
+
+/// Momentum balance of every node; what its holder gave it goes on the holder's account.
+void ClothReactions::findImpulses(const ClothTick& tick) {
+    const double h = tick.length;
+    m_impulses.resize(tick.to.x.rows(), 3);
+    const bool known = tick.stepper.internal_forces(tick.to.x, m_internal);
+    if (known) m_internal *= massRatio(m_body, tick.garment);
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        const double mass = massOf(m_body.m_nodes[i]);
+        Vec3 velocity = tick.to.v.row(i) - tick.from.v.row(i);
+        velocity -= h * tick.boundary.gravity;
+        if (tick.boundary.accelerations.size())
+            velocity -= h * tick.boundary.accelerations.row(i).transpose();
+        m_impulses.row(i) = mass * velocity;
+        if (known && mass > 0.0) m_impulses.row(i) -= h * m_internal.row(i);
+        btRigidBody* holder = m_holder[static_cast<size_t>(i)];
+        if (!holder) continue;
+        Account& account = m_accounts[holder];
+        const Vec3 arm = Vec3(tick.to.x.row(i)) - centreOf(*holder);
+        const Vec3 impulse = -m_impulses.row(i).transpose();
+        account.taken.head<3>() += impulse;
+        account.taken.tail<3>() += arm.cross(impulse);
+        account.nodes.push_back(i);
+        account.mass += mass;
+        account.middle += mass * arm;
+    }
+}
+
+/// Of nodes that nobody holds there is a rest where the stepper did not converge. Cloth that only
+/// dynamic bodies hold must not lose it.
+void ClothReactions::shareRest() {
+    Vec3 rest = Vec3::Zero();
+    double held = 0.0;
+    for (size_t i = 0; i < m_holder.size(); ++i)
+        if (!m_holder[i]) rest -= m_impulses.row(static_cast<Eigen::Index>(i)).transpose();
+    for (const auto& entry : m_accounts) held += entry.second.mass;
+    if (!(held > 0.0)) return;
+    for (auto& entry : m_accounts) {
+        Account& account = entry.second;
+        const Vec3 share = (account.mass / held) * rest;
+        account.taken.head<3>() += share;
+        if (account.mass > 0.0)
+            account.taken.tail<3>() += (account.middle / account.mass).cross(share);
+    }
+}
+
+std::vector<ClothReactions::Follower> ClothReactions::followersOf(const ClothTick& tick,
+                                                                  const btRigidBody& body,
+                                                                  const Account& account) const {
+    std::vector<Follower> followers;
+    std::vector<int> anchors;
+    const Vec3 centre = centreOf(body);
+    for (int i : account.nodes) {
+        followers.push_back({i, Vec3(tick.to.x.row(i)) - centre, 1.0});
+        if (tick.garment.is_pinned()[static_cast<size_t>(i)]) anchors.push_back(i);
+    }
+    if (anchors.empty()) return followers;
+    const Fabric& fabric = tick.garment.fabric();
+    const double reach = tick.length * std::sqrt(fabric.longitudinal() / fabric.density);
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        if (tick.garment.is_pinned()[static_cast<size_t>(i)]) continue;
+        int nearest = -1;
+        double distance = reach;
+        for (int anchor : anchors) {
+            const double d = (tick.to.x.row(i) - tick.to.x.row(anchor)).norm();
+            if (d < distance) {
+                distance = d;
+                nearest = anchor;
+            }
+        }
+        if (nearest >= 0)
+            followers.push_back({i, Vec3(tick.to.x.row(nearest)) - centre, 1.0 - distance / reach});
+    }
+    return followers;
+}
+
+/// The common motion of the class comment.
+void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Account& account) {
+    const Matrix6 mass = massMatrix(body);
+    Matrix6 both = mass;
+    const std::vector<Follower> followers = followersOf(tick, body, account);
+    for (const Follower& follower : followers) {
+        Eigen::Matrix<double, 3, 6> motion;
+        motion << Eigen::Matrix3d::Identity(), -crossMatrix(follower.arm);
+        both +=
+            follower.weight * massOf(m_body.m_nodes[follower.node]) * (motion.transpose() * motion);
+    }
+    // A tick that was cut short has left something to hand over.
+    Vector6 change = both.ldlt().solve(account.taken + account.planned);
+    if (!change.allFinite()) return;
+    const Vec3 turning = toVec3(body.getAngularVelocity());
+    change.tail<3>() = limitedTurn(turning, change.tail<3>(), tick.length);
+    for (const Follower& follower : followers) {
+        const Vec3 velocity = change.head<3>() + change.tail<3>().cross(follower.arm);
+        tick.to.v.row(follower.node) += follower.weight * velocity.transpose();
+    }
+    account.planned = mass * change;
+    account.plan_time = tick.length;
+}
+
+void ClothReactions::apply(double h, const std::vector<DynamicObstacle>& near) {
+    m_last_impulse.setZero();
+    const auto is_there = [&](const btRigidBody* body) {
+        for (const DynamicObstacle& obstacle : near)
+            if (obstacle.body == body) return true;
+        for (int a = 0; a < m_body.m_anchors.size(); ++a)
+            if (m_body.m_anchors[a].m_body == body) return true;
+        return false;
+    };
+    for (auto it = m_accounts.begin(); it != m_accounts.end();) {
+        // First of all: the pointer of a body that is gone must not be followed.
+        if (!is_there(it->first)) {
+            it = m_accounts.erase(it);
+            continue;
+        }
+        btRigidBody& body = *it->first;
+        Account& account = it->second;
+        const double part = h < account.plan_time ? h / account.plan_time : 1.0;
+        const Vector6 now = part * account.planned;
+        account.planned -= now;
+        account.plan_time = std::max(0.0, account.plan_time - h);
+        if (isDynamic(body) && now.allFinite()) {
+            body.applyCentralImpulse(toBullet(Vec3(now.head<3>())));
+            body.applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
+            m_last_impulse += now.head<3>();
+        }
+        ++it;
+    }
+}
+
+}  // namespace cloth

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "bullet_ext/bulletObstacles.h"
+#include "gnn/stepper.h"
+
+class btRigidBody;
+class btSoftBody;
+
+namespace cloth {
+
+/// One step of a Stepper, as reactions need it.
+struct ClothTick {
+    const Garment& garment;
+    const Stepper& stepper;
+    const Boundary& boundary;
+    const ClothState& from;
+    ClothState& to;  ///< velocities of nodes that rigid bodies hold are changed
+    double length;   ///< (s)
+    const std::vector<DynamicObstacle>& near;  ///< dynamic bodies that the cloth may touch
+};
+
+/// Gives dynamic rigid bodies the impulses that contacts and anchors took from them.
+///
+/// What a step changed in a node's momentum, less gravity, node forces and the fabric's own forces,
+/// came from outside: from the body that the node is anchored to or touches (itself, or the middle
+/// of an edge or face of it). Momentum is counted in the soft body's node masses. Where nothing but
+/// dynamic bodies supports the cloth, momentum is conserved to rounding.
+///
+/// The stepper took the body's motion as given, however light the body is. So body and cloth are
+/// brought to a common motion afterwards, as in an inelastic collision: with the impulse J that the
+/// nodes took, both get the change of velocity d,
+///
+///     (M + sum w_i m_i J_i' J_i) d = J,   v_i += w_i J_i d
+///
+/// M is the body's mass matrix (6 x 6), m_i a node's mass, J_i takes the body's velocity to that of
+/// node i. Nodes that the body holds have w = 1. Cloth that an anchor pulls follows as far as a
+/// stretch wave runs in the tick: w falls from 1 at the anchor, whose motion counts, to 0 there.
+/// Without that a light body on stiff cloth would be thrown about.
+class ClothReactions {
+ public:
+    explicit ClothReactions(btSoftBody& body) : m_body(body) {}
+
+    /// Finds the impulses of a tick.
+    void collect(const ClothTick& tick);
+    /// Hands over the part that belongs to a world step of h seconds. Bodies that are neither
+    /// anchored to nor near the cloth any more get nothing.
+    void apply(double h, const std::vector<DynamicObstacle>& near);
+
+    /// Impulse given to rigid bodies in the last apply() (N s).
+    const Vec3& lastImpulse() const { return m_last_impulse; }
+
+ private:
+    using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< along the axes, then about the centre
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    /// Cloth that follows the body: at a place of it (m, from its centre), with a part of its mass.
+    struct Follower {
+        int node;
+        Vec3 arm;
+        double weight;
+    };
+    struct Account {
+        Vector6 taken = Vector6::Zero();    ///< impulse of this tick (N s, N m s)
+        Vector6 planned = Vector6::Zero();  ///< what the rest of the present tick hands over
+        double plan_time = 0.0;             ///< that rest (s)
+        std::vector<int> nodes;             ///< that touch the body or are anchored to it
+        double mass = 0.0;                  ///< of those nodes (kg)
+        Vec3 middle = Vec3::Zero();         ///< sum of mass times arm (kg m)
+    };
+
+    void findHolders(const ClothTick& tick);
+    void findImpulses(const ClothTick& tick);
+    void shareRest();
+    std::vector<Follower> followersOf(const ClothTick& tick, const btRigidBody& body,
+                                      const Account& account) const;
+    void settle(const ClothTick& tick, const btRigidBody& body, Account& account);
+
+    btSoftBody& m_body;
+    std::map<btRigidBody*, Account> m_accounts;
+    std::vector<btRigidBody*> m_holder;  ///< |V|: null: nobody
+    std::vector<double> m_distance;      ///< |V| (m): to the holder
+    Points m_impulses;                   ///< |V| x 3 (N s): from outside
+    Points m_internal;                   ///< |V| x 3 (N)
+    Vec3 m_last_impulse = Vec3::Zero();
+};
+
+}  // namespace cloth

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+
+#include "bullet_ext/btGnnSoftBodySolver.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+
+namespace cloth::test {
+
+/// A stepper with its own time step, as learned ones have.
+class Ticking : public Stepper {
+ public:
+    Ticking(std::unique_ptr<Stepper> inner, double dt) : m_inner(std::move(inner)), m_dt(dt) {}
+    std::string name() const override { return m_inner->name(); }
+    double fixed_dt() const override { return m_dt; }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
+        return m_inner->step(boundary, dt, state);
+    }
+    bool internal_forces(const Points& x, Points& forces) const override {
+        return m_inner->internal_forces(x, forces);
+    }
+
+ private:
+    std::unique_ptr<Stepper> m_inner;
+    double m_dt;
+};
+
+/// Quasi-Newton steps at the world's rate, or at a rate of their own if fixed_dt is not zero.
+inline StepperFactory quasi_newton(double fixed_dt = 0.0, int iterations = 15) {
+    return [=](const Garment& garment) -> std::unique_ptr<Stepper> {
+        QuasiNewtonSettings settings;
+        settings.iterations = iterations;
+        auto stepper = std::make_unique<QuasiNewtonStepper>(garment, settings);
+        if (fixed_dt == 0.0) return stepper;
+        return std::make_unique<Ticking>(std::move(stepper), fixed_dt);
+    };
+}
+
+}  // namespace cloth::test
