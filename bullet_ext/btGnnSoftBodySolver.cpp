@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ext/materialFabric.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
 #include "data/errors.h"
@@ -65,6 +66,18 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
     build(*body, entry);
 }
 
+void btGnnSoftBodySolver::attach(btSoftBody* body, const cloth::Fabric& fabric,
+                                 cloth::StepperFactory factory) {
+    if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
+    Entry& entry = m_entries[body];
+    entry.given = nullptr;
+    entry.fabric = fabric;
+    entry.factory = std::move(factory);
+    entry.detached = false;
+    entry.worldId = 0;
+    build(*body, entry);
+}
+
 void btGnnSoftBodySolver::detach(btSoftBody* body) {
     Entry& entry = m_entries[body];
     entry.step.reset();
@@ -83,9 +96,7 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
     cloth::checkCloth(body);
     if (entry.given) cloth::checkGarmentFits(body, *entry.given);
-    auto garment = std::make_unique<const Garment>(
-        entry.given ? entry.given->with_pins(cloth::pinnedNodes(body))
-                    : cloth::garmentOfSoftBody(body, m_settings.fabric, m_settings.useBodyDensity));
+    auto garment = std::make_unique<const Garment>(garmentFor(body, entry));
     std::unique_ptr<cloth::Stepper> stepper =
         entry.factory ? entry.factory(*garment) : m_factory(*garment);
     if (!stepper)
@@ -94,6 +105,15 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     entry.step =
         std::make_unique<cloth::SoftBodyStep>(body, std::move(garment), std::move(stepper));
     entry.stepping = Stepping::cloth;
+}
+
+Garment btGnnSoftBodySolver::garmentFor(const btSoftBody& body, const Entry& entry) const {
+    if (entry.given) return entry.given->with_pins(cloth::pinnedNodes(body));
+    if (entry.fabric) return cloth::garmentOfSoftBody(body, *entry.fabric, false);
+    const cloth::Fabric& fabric = m_settings.fabric;
+    return cloth::garmentOfSoftBody(
+        body, m_settings.useBodyMaterials ? cloth::fabricOfMaterials(body, fabric.density) : fabric,
+        m_settings.useBodyDensity);
 }
 
 void btGnnSoftBodySolver::tryBuild(btSoftBody& body, Entry& entry) {

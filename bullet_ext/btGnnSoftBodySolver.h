@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,9 @@ using StepperFactory = std::function<std::unique_ptr<Stepper>(const Garment&)>;
 }  // namespace cloth
 
 struct btGnnSolverSettings {
-    cloth::Fabric fabric;         ///< of cloth whose garment is not given
+    cloth::Fabric fabric;           ///< of cloth whose garment is not given
+    bool useBodyMaterials = false;  ///< true: its stiffness is that of the body's m_materials, by
+                                    ///< the rule of materialFabric.h
     bool useBodyDensity = false;  ///< true: the fabric's density is the body's mass per area;
                                   ///< false: the cloth moves as its fabric does, whatever it weighs
     double obstacleReach = 0.1;   ///< how far around cloth obstacles are looked for (m), 0.02 to 1
@@ -60,12 +63,14 @@ struct btGnnSolverStatus {
 ///   conservation and pose matching. All other soft bodies, and cloth that cannot be a garment, are
 ///   stepped by Bullet's own code, body by body, as by btDefaultSoftBodySolver.
 /// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
-///   nodes (moved by their rigid body, which does not feel the cloth).
-/// - Obstacles are the world's collision objects; see BulletObstacles. Cloth feels them, dynamic
-///   bodies do not feel cloth; cloth does not touch other soft bodies.
+///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
+/// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
+/// what
+///   contacts and anchors took from them, see ClothReactions. Cloth does not touch other soft
+///   bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
-///   act as Bullet documents them; m_materials do not: the fabric decides.
+///   act as Bullet documents them; m_materials do if the settings say so, else the fabric decides.
 /// - The rest shape is the shape of the first step. Later transform() and translate() move the
 /// cloth
 ///   and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
@@ -82,6 +87,10 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// The same with the body's garment (its rest shape and fabric; pins are taken from the body)
     /// and, if given, its own kind of stepper. It holds until the body leaves the world.
     void attach(btSoftBody* body, const cloth::Garment& garment,
+                cloth::StepperFactory factory = nullptr);
+    /// The same with a fabric of its own: nothing of it is taken from settings, materials or
+    /// masses.
+    void attach(btSoftBody* body, const cloth::Fabric& fabric,
                 cloth::StepperFactory factory = nullptr);
     /// Leaves the body to Bullet's own code from now on.
     void detach(btSoftBody* body);
@@ -123,6 +132,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         bool seen = false;      ///< was part of the world
         std::unique_ptr<cloth::SoftBodyStep> step;
         std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null
+        std::optional<cloth::Fabric> fabric;          ///< the body's own
         cloth::StepperFactory factory;                ///< the body's own, else null
         size_t topology = 0;
         double linkLength = 0.0;  ///< mean rest length when it was attached (m)
@@ -130,6 +140,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     };
 
     void build(btSoftBody& body, Entry& entry);
+    cloth::Garment garmentFor(const btSoftBody& body, const Entry& entry) const;
     void tryBuild(btSoftBody& body, Entry& entry);
     void refresh(btSoftBody& body, Entry& entry);
     void followScale(btSoftBody& body, Entry& entry);

@@ -461,6 +461,47 @@ TEST(GnnSolver, GivenGarmentAndStepperAreUsed) {
     EXPECT_THROW(solver.attach(other, garment), ArgumentError);
 }
 
+TEST(GnnSolver, MaterialsChooseTheFabricIfTheyAreAsked) {
+    btGnnSolverSettings settings;
+    settings.useBodyMaterials = true;
+    btGnnSoftBodySolver solver(free_fall(), settings);
+    World world(&solver);
+    btSoftBody* stiff = world.add(patch(world.info(), {0, 0, 0}));
+    btSoftBody* soft = world.add(patch(world.info(), {0, 2, 0}));
+    soft->m_materials[0]->m_kLST = 0;
+    btSoftBody* bent = world.add(patch(world.info(), {0, 4, 0}));
+    bent->m_materials[0]->m_kLST = 0.5f;
+    btSoftBody::Material* bending = bent->appendMaterial();
+    bending->m_kLST = 1;
+    bent->generateBendingConstraints(2, bending);
+    world.step(1.0 / 60.0);
+    const auto young = [&](const btSoftBody* body) {
+        return 2.6 * solver.garmentOf(body)->fabric().mu;
+    };
+    EXPECT_NEAR(young(stiff), 5000, 1e-6);
+    EXPECT_NEAR(young(soft), 33, 1e-6);
+    EXPECT_NEAR(young(bent), std::sqrt(33.0 * 5000.0), 1e-6);
+    EXPECT_NEAR(solver.garmentOf(stiff)->fabric().bending, 4e-6, 1e-12);
+    EXPECT_NEAR(solver.garmentOf(bent)->fabric().bending, 4e-4, 1e-10);
+}
+
+TEST(GnnSolver, EveryBodyMayHaveItsOwnFabricAndStepper) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* first = world.add(patch(world.info(), {0, 0, 0}));
+    btSoftBody* second = world.add(patch(world.info(), {0, 2, 0}));
+    auto log = std::make_shared<FreeFall::Log>();
+    solver.attach(first, Fabric::real_cotton());
+    solver.attach(second, Fabric::soft_cotton(), free_fall(log));
+    world.step(1.0 / 60.0, 3);
+    EXPECT_EQ(solver.garmentOf(first)->fabric().mu, Fabric::real_cotton().mu);
+    EXPECT_EQ(solver.garmentOf(second)->fabric().mu, Fabric::soft_cotton().mu);
+    EXPECT_EQ(log->dts.size(), 3u);
+    first->setMass(0, 0);  // a new pin keeps the fabric
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(solver.garmentOf(first)->fabric().mu, Fabric::real_cotton().mu);
+}
+
 TEST(GnnSolver, SubStepsOfOneCallAgreeWithSeparateCalls) {
     std::vector<btVector3> results[2];
     for (int i = 0; i < 2; ++i) {
