@@ -36,6 +36,7 @@ class Garment {
     const std::vector<std::array<int, 2>>& edges() const { return m_edges; }
     const std::vector<Hinge>& hinges() const { return m_hinges; }
     const VectorX& hinge_rest_angles() const { return m_hinge_rest_angles; }  ///< |hinges| (rad)
+    bool rest_angles_from_mesh() const { return m_rest_angles_from_mesh; }    ///< else flat
     const VectorX& face_areas() const { return m_face_areas; }                ///< |F| (m^2)
     const VectorX& masses() const { return m_masses; }                        ///< |V| (kg)
     Eigen::Index vertex_count() const { return m_rest.vertices.rows(); }
