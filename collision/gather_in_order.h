@@ -1,0 +1,30 @@
+#pragma once
+
+#include <omp.h>
+
+#include <vector>
+
+namespace cloth {
+
+/// Runs work(part, out) for part = 0 .. parts - 1 on several threads and strings the results
+/// together in the order of the parts, so that they do not depend on the number of threads.
+/// `buffers` keeps its memory from call to call.
+/// @param threads  0: as many as OpenMP gives
+template <typename Item, typename Work>
+void gather_in_order(int parts, int threads, std::vector<std::vector<Item>>& buffers,
+                     std::vector<Item>& all, const Work& work) {
+    if (buffers.size() < static_cast<size_t>(parts)) buffers.resize(static_cast<size_t>(parts));
+    const int workers = threads > 0 ? threads : omp_get_max_threads();
+#pragma omp parallel for schedule(dynamic, 1) num_threads(workers) if (workers > 1 && parts > 1)
+    for (int part = 0; part < parts; ++part) {
+        buffers[static_cast<size_t>(part)].clear();
+        work(part, buffers[static_cast<size_t>(part)]);
+    }
+    all.clear();
+    for (int part = 0; part < parts; ++part) {
+        const std::vector<Item>& found = buffers[static_cast<size_t>(part)];
+        all.insert(all.end(), found.begin(), found.end());
+    }
+}
+
+}  // namespace cloth
