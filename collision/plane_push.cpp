@@ -20,19 +20,28 @@ PlanePush::PlanePush(VectorX inverse_masses)
 
 void PlanePush::add(const std::array<int, 3>& vertex, const std::array<double, 3>& weight,
                     const Vec3& normal, double height) {
-    m_planes.push_back({vertex, weight, normal, height});
+    m_planes.push_back({{vertex[0], vertex[1], vertex[2], vertex[2]},
+                        {weight[0], weight[1], weight[2], 0.0},
+                        3,
+                        normal,
+                        height});
+}
+
+void PlanePush::add_pair(const std::array<int, 4>& vertex, const std::array<double, 4>& weight,
+                         const Vec3& normal, double height) {
+    m_planes.push_back({vertex, weight, 4, normal, height});
 }
 
 void PlanePush::mark_vertices(std::vector<char>& marks) const {
     for (const Plane& plane : m_planes)
-        for (size_t k = 0; k < 3; ++k)
+        for (size_t k = 0; k < plane.count; ++k)
             if (plane.weight[k] != 0.0) marks[static_cast<size_t>(plane.vertex[k])] = 1;
 }
 
 /// How far the plane's point is below it (m), negative above.
 double PlanePush::missing(const Plane& plane, const Points& x) const {
     double height = 0.0;
-    for (size_t k = 0; k < 3; ++k)
+    for (size_t k = 0; k < plane.count; ++k)
         if (plane.weight[k] != 0.0)
             height += plane.weight[k] * x.row(plane.vertex[k]).dot(plane.normal);
     return plane.height - height;
@@ -44,7 +53,7 @@ double PlanePush::share_out(const Points& x) {
     double deepest = 0.0;
     for (const Plane& plane : m_planes) {
         deepest = std::max(deepest, missing(plane, x));
-        for (size_t k = 0; k < 3; ++k) {
+        for (size_t k = 0; k < plane.count; ++k) {
             if (plane.weight[k] == 0.0) continue;
             const int i = plane.vertex[k];
             if (m_shares[static_cast<size_t>(i)]++ == 0) {
@@ -54,7 +63,7 @@ double PlanePush::share_out(const Points& x) {
         }
     }
     for (Plane& plane : m_planes)
-        for (size_t k = 0; k < 3; ++k)
+        for (size_t k = 0; k < plane.count; ++k)
             plane.mobility += plane.weight[k] * plane.weight[k] *
                               m_inverse_masses[plane.vertex[k]] *
                               m_shares[static_cast<size_t>(plane.vertex[k])];
@@ -73,7 +82,7 @@ double PlanePush::sweep(Points& x) {
     }
     for (const Plane& plane : m_planes) {
         if (plane.change == 0.0) continue;
-        for (size_t k = 0; k < 3; ++k)
+        for (size_t k = 0; k < plane.count; ++k)
             x.row(plane.vertex[k]) += plane.weight[k] * m_inverse_masses[plane.vertex[k]] *
                                       plane.change * plane.normal.transpose();
     }

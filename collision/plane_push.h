@@ -26,6 +26,9 @@ class PlanePush {
     /// A weight of 0 leaves its vertex out. `normal` is a unit vector, `height` in m.
     void add(const std::array<int, 3>& vertex, const std::array<double, 3>& weight,
              const Vec3& normal, double height);
+    /// The same for two elements that are to part: their weights add up to 0.
+    void add_pair(const std::array<int, 4>& vertex, const std::array<double, 4>& weight,
+                  const Vec3& normal, double height);
 
     /// Sets `marks` (|V|) to 1 for each vertex of a plane.
     void mark_vertices(std::vector<char>& marks) const;
@@ -39,8 +42,9 @@ class PlanePush {
 
  private:
     struct Plane {
-        std::array<int, 3> vertex;
-        std::array<double, 3> weight;
+        std::array<int, 4> vertex;
+        std::array<double, 4> weight;
+        size_t count;  ///< of its vertices, 3 or 4
         Vec3 normal;
         double height;
         double mobility = 0.0;    ///< lift per multiplier, of vertices shared out (1/kg)

@@ -42,6 +42,26 @@ TEST(PlanePush, PlanesThatAgreeDoNotAddUp) {
     for (const int i : {0, 1, 2}) EXPECT_NEAR(x(i, 1), 0.01, 1e-5);
 }
 
+TEST(PlanePush, AFaceAndAVertexPartWithoutMomentum) {
+    VectorX inverse(4);
+    inverse << 1.0, 2.0, 4.0, 1.0;
+    PlanePush push(inverse);
+    std::mt19937 random(2);
+    const Points before = random_points(random, 4, 1e-3);
+    Points x = before;
+    const std::array<double, 4> weight{1.0, -0.5, -0.3, -0.2};
+    push.add_pair({0, 1, 2, 3}, weight, Vec3::UnitY(), 0.01);
+    push.solve(200, 10.0, x);
+    double height = 0.0, momentum = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        height += weight[size_t(k)] * x(k, 1);
+        momentum += (x(k, 1) - before(k, 1)) / inverse[k];
+    }
+    EXPECT_NEAR(height, 0.01, 1e-5);
+    EXPECT_NEAR(momentum, 0.0, 1e-15);
+    EXPECT_EQ(push.moved(), (std::vector<int>{0, 1, 2, 3}));
+}
+
 TEST(PlanePush, PointsAboveTheirPlanesStay) {
     PlanePush push(VectorX::Ones(3));
     std::mt19937 random(1);
