@@ -102,8 +102,9 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     if (!stepper)
         throw ArgumentError(cloth::softBodyName(body), "the stepper factory returned null",
                             "return a Stepper or throw an error that says why there is none");
-    entry.step =
-        std::make_unique<cloth::SoftBodyStep>(body, std::move(garment), std::move(stepper));
+    entry.step = std::make_unique<cloth::SoftBodyStep>(body, std::move(garment), std::move(stepper),
+                                                       m_settings.sleepMotion);
+    if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
 }
 
@@ -191,7 +192,8 @@ void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
 
 void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_obstacles.beginStep(static_cast<double>(solverdt));
-    m_status.clothBodies = m_status.bulletBodies = m_status.frozenBodies = 0;
+    m_status.clothBodies = m_status.bulletBodies = 0;
+    m_status.sleepingBodies = m_status.frozenBodies = 0;
     m_status.maxPenetration = 0.0;
     m_status.times = {};
     for (int i = 0; i < m_softBodySet.size(); ++i) {
@@ -200,6 +202,9 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
         m_status.clothBodies += entry.stepping == Stepping::cloth;
         m_status.bulletBodies += entry.stepping == Stepping::bullet;
         m_status.frozenBodies += entry.stepping == Stepping::frozen;
+        if (entry.stepping == Stepping::cloth && body.getActivationState() == ISLAND_SLEEPING &&
+            entry.step->sleepsOn(m_obstacles))
+            ++m_status.sleepingBodies;
         if (!body.isActive()) continue;
         if (entry.stepping == Stepping::bullet) body.solveConstraints();
         if (entry.stepping == Stepping::cloth)

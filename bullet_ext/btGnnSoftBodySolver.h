@@ -27,10 +27,12 @@ struct btGnnSolverSettings {
     cloth::Fabric fabric;           ///< of cloth whose garment is not given
     bool useBodyMaterials = false;  ///< true: its stiffness is that of the body's m_materials, by
                                     ///< the rule of materialFabric.h
-    bool useBodyDensity = false;  ///< true: the fabric's density is the body's mass per area;
+    bool useBodyDensity = false;    ///< true: the fabric's density is the body's mass per area;
                                   ///< false: the cloth moves as its fabric does, whatever it weighs
-    double obstacleReach = 0.1;   ///< how far around cloth obstacles are looked for (m), 0.02 to 1
-    int maxFailedSteps = 3;       ///< after so many failures in a row Bullet steps the body
+    double obstacleReach = 0.1;  ///< how far around cloth obstacles are looked for (m), 0.02 to 1
+    double sleepMotion = 2e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, up to
+                                 ///< 0.05; 0: it never does
+    int maxFailedSteps = 3;      ///< after so many failures in a row Bullet steps the body
 };
 
 struct btGnnSolverMessage {
@@ -42,6 +44,7 @@ struct btGnnSolverMessage {
 struct btGnnSolverStatus {
     int clothBodies = 0;          ///< stepped by a Stepper in the last world step
     int bulletBodies = 0;         ///< stepped by Bullet's own code
+    int sleepingBodies = 0;       ///< of the cloth bodies, those that rest and cost nothing
     int frozenBodies = 0;         ///< not stepped at all: their nodes are not finite
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed

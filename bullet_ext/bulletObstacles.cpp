@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -204,8 +205,7 @@ void BulletObstacles::append(const Track& track, double friction, const TimeSpan
 void BulletObstacles::append(const Animation& animation, double friction, const TimeSpan& span,
                              std::vector<Obstacle>& obstacles) const {
     const AnimatedMesh& mesh = animation.mesh;
-    // A mesh that was not given anew stands still; one that was is assumed to go on as it does.
-    const bool stands = animation.begin >= mesh.duration * 0.999;
+    const bool stands = animation.stands();
     const auto at = [&](double time) -> Points {
         const double s = stands ? 1.0 : (animation.begin + time) / mesh.duration;
         if (s == 0.0) return mesh.x0;
@@ -243,11 +243,29 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
     for (const btCollisionObject* object : objectsIn(body, low, high))
         append(update(*object), softness * object->getFriction(), span, obstacles);
     for (const auto& [object, animation] : m_animated)
-        if (collides(body, *object) &&
-            (overlaps(animation.mesh.x0, low, high) || overlaps(animation.mesh.x1, low, high)))
+        if (collides(body, *object) && animation.near(low, high))
             append(animation, softness * object->getFriction(), span, obstacles);
     sortByGeometry(obstacles);
     return obstacles;
+}
+
+bool BulletObstacles::Animation::near(const Vec3& low, const Vec3& high) const {
+    return overlaps(mesh.x0, low, high) || overlaps(mesh.x1, low, high);
+}
+
+std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, const Vec3& low,
+                                                     const Vec3& high) const {
+    std::vector<NearObject> near;
+    for (const btCollisionObject* object : objectsIn(body, low, high))
+        near.push_back({object, object->getWorldTransform(),
+                        shapeSignature(*object->getCollisionShape()), false});
+    for (const auto& [object, animation] : m_animated)
+        if (collides(body, *object) && animation.near(low, high))
+            near.push_back({object, object->getWorldTransform(), 0, !animation.stands()});
+    std::sort(near.begin(), near.end(), [](const NearObject& a, const NearObject& b) {
+        return std::less<const btCollisionObject*>()(a.object, b.object);
+    });
+    return near;
 }
 
 std::vector<DynamicObstacle> BulletObstacles::dynamicNear(const btSoftBody& body, const Vec3& low,

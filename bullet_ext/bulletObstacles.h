@@ -1,5 +1,7 @@
 #pragma once
 
+#include <LinearMath/btTransform.h>
+
 #include <map>
 #include <memory>
 #include <string>
@@ -38,6 +40,14 @@ struct DynamicObstacle {
     double distance(const Vec3& point, double radius) const;
 };
 
+/// What sleeping cloth has to know of an object near it.
+struct NearObject {
+    const btCollisionObject* object = nullptr;
+    btTransform pose;
+    size_t shape = 0;    ///< shapeSignature()
+    bool moves = false;  ///< an animated mesh under way
+};
+
 /// Watches the collision objects of a Bullet world and describes them as obstacles.
 ///
 /// Bullet gives poses at the end of a step only, and those of kinematic bodies once for all
@@ -63,6 +73,10 @@ class BulletObstacles {
     std::vector<DynamicObstacle> dynamicNear(const btSoftBody& body, const Vec3& low,
                                              const Vec3& high, double time);
 
+    /// All objects that near() would look at, in a fixed order.
+    std::vector<NearObject> objectsNear(const btSoftBody& body, const Vec3& low,
+                                        const Vec3& high) const;
+
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
 
@@ -82,6 +96,10 @@ class BulletObstacles {
     struct Animation {
         AnimatedMesh mesh;
         double begin = 0.0, end = 0.0;  ///< the present world step, counted from x0 (s)
+        bool near(const Vec3& low, const Vec3& high) const;
+        /// A mesh that was not given anew stands still; one that was is assumed to go on as it
+        /// does.
+        bool stands() const { return begin >= mesh.duration * 0.999; }
     };
 
     bool collides(const btSoftBody& body, const btCollisionObject& object) const;

@@ -43,11 +43,12 @@ Box boxAhead(const ClothState& state, double time, double reach) {
 }  // namespace
 
 SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
-                           std::unique_ptr<Stepper> stepper)
+                           std::unique_ptr<Stepper> stepper, double sleep_motion)
     : m_body(body),
       m_garment(std::move(garment)),
       m_stepper(std::move(stepper)),
-      m_reactions(body) {
+      m_reactions(body),
+      m_sleep(body, sleep_motion) {
     const int count = body.m_nodes.size();
     m_shown.x = nodePositions(body);
     m_shown.v.resize(count, 3);
@@ -83,7 +84,18 @@ SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, do
     writeNodes();
     m_reactions.apply(m_h, obstacles.dynamicNear(m_body, box.low, box.high, h));
     m_tick.begin -= m_h;
+    m_sleep.afterStep(m_shown.x, h, obstacles, box.low, box.high);
     return result;
+}
+
+bool SoftBodyStep::sleepsOn(const BulletObstacles& obstacles) {
+    if (m_sleep.sleepsOn(obstacles)) return true;
+    // It wakes where its nodes are, at rest or with what the user gave them.
+    m_shown.v.setZero();
+    for (int i = 0; i < m_body.m_nodes.size() && i < m_shown.v.rows(); ++i)
+        m_shown.v.row(i) = toVec3(m_body.m_nodes[i].m_v);
+    m_tick.valid = false;
+    return false;
 }
 
 /// What btSoftBody::predictMotion() prepares and other parts of Bullet rely on.

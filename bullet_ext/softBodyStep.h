@@ -6,6 +6,7 @@
 
 #include "bullet_ext/bulletObstacles.h"
 #include "bullet_ext/clothReactions.h"
+#include "bullet_ext/clothSleep.h"
 #include "gnn/stepper.h"
 
 class btSoftBody;
@@ -26,8 +27,9 @@ namespace cloth {
 /// Dynamic rigid bodies get what they gave to the cloth, see ClothReactions.
 class SoftBodyStep {
  public:
+    /// @param sleep_motion  cloth that moves less rests (m)
     SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
-                 std::unique_ptr<Stepper> stepper);
+                 std::unique_ptr<Stepper> stepper, double sleep_motion);
 
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
@@ -43,6 +45,8 @@ class SoftBodyStep {
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
     /// the world step and writes the nodes. Obstacles are looked for within `reach` (m).
     Result step(double h, BulletObstacles& obstacles, double reach);
+    /// Whether cloth that Bullet has put to sleep may sleep on; if not, it is awake now.
+    bool sleepsOn(const BulletObstacles& obstacles);
 
  private:
     struct Tick {
@@ -70,6 +74,7 @@ class SoftBodyStep {
     std::unique_ptr<Stepper> m_stepper;
     StepReport m_report;
     ClothReactions m_reactions;
+    ClothSleep m_sleep;
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
     Tick m_tick;
