@@ -268,28 +268,44 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
     return near;
 }
 
-std::vector<DynamicObstacle> BulletObstacles::dynamicNear(const btSoftBody& body, const Vec3& low,
-                                                          const Vec3& high, double time) {
-    std::vector<DynamicObstacle> dynamic;
-    for (const btCollisionObject* object : objectsIn(body, low, high)) {
+std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const Vec3& low,
+                                                   const Vec3& high, double time) {
+    const auto dynamic = [](const btCollisionObject* object) {
         const btRigidBody* rigid = btRigidBody::upcast(object);
-        if (!rigid || rigid->isStaticOrKinematicObject() || !(rigid->getInvMass() > 0)) continue;
+        return rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0;
+    };
+    const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
+    std::vector<NearSolid> solids;
+    if (std::none_of(objects.begin(), objects.end(), dynamic)) return solids;
+    for (const btCollisionObject* object : objects) {
         Track& track = update(*object);
         if (track.distances.empty())
             for (const ShapePart& part : track.parts) track.distances.emplace_back(part);
         // The world owns the body and may push it; cloth only hands on what the world would do.
-        dynamic.push_back({const_cast<btRigidBody*>(rigid),
-                           between(track.begin, track.end, time / m_h).inverse(),
-                           &track.distances});
+        btRigidBody* pushed =
+            dynamic(object) ? const_cast<btRigidBody*>(btRigidBody::upcast(object)) : nullptr;
+        solids.push_back(
+            {pushed, between(track.begin, track.end, time / m_h).inverse(), &track.distances});
     }
-    return dynamic;
+    return solids;
 }
 
-double DynamicObstacle::distance(const Vec3& point, double radius) const {
+double NearSolid::distance(const Vec3& point, double radius) const {
     const Vec3 local = inverse * point;
     double nearest = std::numeric_limits<double>::infinity();
     for (const PartDistance& part : *parts) nearest = std::min(nearest, part.at(local, radius));
     return nearest;
+}
+
+Vec3 NearSolid::outward(const Vec3& point, double radius) const {
+    constexpr double kStep = 1e-5;  // m
+    Vec3 gradient;
+    for (int c = 0; c < 3; ++c) {
+        const Vec3 step = kStep * Vec3::Unit(c);
+        gradient[c] =
+            distance(point + step, radius + kStep) - distance(point - step, radius + kStep);
+    }
+    return gradient.allFinite() ? Vec3(gradient.stableNormalized()) : Vec3(Vec3::Zero());
 }
 
 std::vector<std::string> BulletObstacles::takeMessages() {

@@ -30,14 +30,16 @@ struct AnimatedMesh {
     double duration = 0.0;               ///< from x0 to x1 (s); 0: one world step
 };
 
-/// A rigid body that cloth can push.
-struct DynamicObstacle {
-    btRigidBody* body = nullptr;
+/// A solid as it is at one moment.
+struct NearSolid {
+    btRigidBody* body = nullptr;      ///< that cloth can push; null: nothing can
     Pose inverse = Pose::Identity();  ///< from the world to the body, where asked for
-    const std::vector<PartDistance>* parts = nullptr;  ///< of its shape; valid in this world step
+    const std::vector<PartDistance>* parts = nullptr;  ///< of the shape; valid in this world step
 
     /// Signed distance (m) of a point of the world; +inf if it is farther than `radius`.
     double distance(const Vec3& point, double radius) const;
+    /// Direction away from the solid at a point within `radius` of it (unit vector, or zero).
+    Vec3 outward(const Vec3& point, double radius) const;
 };
 
 /// What sleeping cloth has to know of an object near it.
@@ -69,9 +71,10 @@ class BulletObstacles {
     std::vector<Obstacle> near(const btSoftBody& body, const Vec3& low, const Vec3& high,
                                const TimeSpan& span);
 
-    /// The dynamic bodies among them, as they are at `time` (s, from the start of the world step).
-    std::vector<DynamicObstacle> dynamicNear(const btSoftBody& body, const Vec3& low,
-                                             const Vec3& high, double time);
+    /// The objects among them that are not animated meshes, as they are at `time` (s, from the
+    /// start of the world step); none if no dynamic body is among them.
+    std::vector<NearSolid> solidsNear(const btSoftBody& body, const Vec3& low, const Vec3& high,
+                                      double time);
 
     /// All objects that near() would look at, in a fixed order.
     std::vector<NearObject> objectsNear(const btSoftBody& body, const Vec3& low,
@@ -87,7 +90,7 @@ class BulletObstacles {
     struct Track {
         size_t signature = 0;
         std::vector<ShapePart> parts;
-        std::vector<PartDistance> distances;  ///< of the parts; made when the body is dynamic
+        std::vector<PartDistance> distances;  ///< of the parts; made when asked for
         long step = -1;                       ///< world step of the last update
         Pose begin, end;                      ///< at both ends of the present world step
         btTransform target;                   ///< where Bullet says the object is

@@ -15,6 +15,8 @@ namespace {
 
 // Contacts keep cloth at 4 mm; points a little farther carry none of the load.
 constexpr double kTouch = 5e-3;  // m
+// Cloth between two solids is this near to both, at least where it is deepest.
+constexpr double kPinch = 2e-2;  // m
 
 /// kg; 0 for nodes that nothing can move
 double massOf(const btSoftBody::Node& node) {
@@ -68,7 +70,8 @@ bool floatsFreely(const btSoftBody& body, const ClothTick& tick) {
     for (int a = 0; a < body.m_anchors.size(); ++a)
         if (!isDynamic(*body.m_anchors[a].m_body)) return false;
     size_t parts = 0;
-    for (const DynamicObstacle& obstacle : tick.near) parts += obstacle.parts->size();
+    for (const NearSolid& solid : tick.near)
+        if (solid.body) parts += solid.parts->size();
     return parts == tick.boundary.obstacles.size();
 }
 
@@ -79,6 +82,8 @@ void ClothReactions::collect(const ClothTick& tick) {
         entry.second.taken.setZero();
         entry.second.nodes.clear();
         entry.second.mass = 0.0;
+        entry.second.meeting = 0.0;
+        entry.second.anchored = false;
         entry.second.middle.setZero();
     }
     findHolders(tick);
@@ -97,9 +102,10 @@ void ClothReactions::collect(const ClothTick& tick) {
 void ClothReactions::findHolders(const ClothTick& tick) {
     const size_t count = static_cast<size_t>(tick.to.x.rows());
     m_holder.assign(count, nullptr);
+    m_touch.resize(tick.to.x.rows(), 3);
     m_distance.assign(count, std::numeric_limits<double>::infinity());
     const Points& x = tick.to.x;
-    const auto touch = [&](const DynamicObstacle& obstacle, const Vec3& point,
+    const auto touch = [&](const NearSolid& obstacle, const Vec3& point,
                            std::initializer_list<int> nodes) {
         const double distance = obstacle.distance(point, kTouch);
         if (!(distance <= kTouch)) return;
@@ -107,9 +113,11 @@ void ClothReactions::findHolders(const ClothTick& tick) {
             if (distance < m_distance[static_cast<size_t>(i)]) {
                 m_distance[static_cast<size_t>(i)] = distance;
                 m_holder[static_cast<size_t>(i)] = obstacle.body;
+                m_touch.row(i) = point;
             }
     };
-    for (const DynamicObstacle& obstacle : tick.near) {
+    for (const NearSolid& obstacle : tick.near) {
+        if (!obstacle.body) continue;
         for (int i = 0; i < static_cast<int>(count); ++i) touch(obstacle, x.row(i), {i});
         for (const auto& [a, b] : tick.garment.edges())
             touch(obstacle, 0.5 * (x.row(a) + x.row(b)), {a, b});
@@ -118,11 +126,49 @@ void ClothReactions::findHolders(const ClothTick& tick) {
             touch(obstacle, (x.row(faces(f, 0)) + x.row(faces(f, 1)) + x.row(faces(f, 2))) / 3.0,
                   {faces(f, 0), faces(f, 1), faces(f, 2)});
     }
+    releasePinching(tick);
     for (int pin : tick.garment.pins()) m_holder[static_cast<size_t>(pin)] = nullptr;
     for (int a = 0; a < m_body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         if (isHardAnchor(anchor) && anchor.m_node->m_im > 0 && isDynamic(*anchor.m_body))
             m_holder[static_cast<size_t>(anchor.m_node - &m_body.m_nodes[0])] = anchor.m_body;
+    }
+}
+
+/// The impulse on the holder of a node, without what a contact cannot give.
+Vec3 ClothReactions::withinFriction(const ClothTick& tick, int node, const Vec3& impulse) const {
+    const btRigidBody* holder = m_holder[static_cast<size_t>(node)];
+    for (const NearSolid& solid : tick.near) {
+        if (solid.body != holder) continue;
+        const Vec3 normal = solid.outward(m_touch.row(node), kPinch);
+        const double push = std::max(0.0, -impulse.dot(normal));
+        const Vec3 rub = impulse - impulse.dot(normal) * normal;
+        const double most = static_cast<double>(m_body.m_cfg.kDF * holder->getFriction()) * push;
+        return -push * normal + (rub.norm() > most ? most / rub.norm() : 1.0) * rub;
+    }
+    return impulse;
+}
+
+/// Whether the node lies between its holder and another solid.
+bool ClothReactions::isPinched(const ClothTick& tick, int node, const NearSolid& holder) const {
+    const Vec3 place = m_touch.row(node);
+    for (const NearSolid& solid : tick.near)
+        if (solid.body != holder.body && solid.distance(place, kPinch) <= kPinch &&
+            solid.outward(place, kPinch).dot(holder.outward(place, kPinch)) < -0.1)
+            return true;
+    return false;
+}
+
+void ClothReactions::releasePinching(const ClothTick& tick) {
+    const int count = static_cast<int>(m_holder.size());
+    for (const NearSolid& holder : tick.near) {
+        if (!holder.body) continue;
+        const auto held = [&](int i) { return m_holder[static_cast<size_t>(i)] == holder.body; };
+        bool pinches = false;
+        for (int i = 0; i < count && !pinches; ++i) pinches = held(i) && isPinched(tick, i, holder);
+        if (pinches)
+            std::replace(m_holder.begin(), m_holder.end(), holder.body,
+                         static_cast<btRigidBody*>(nullptr));
     }
 }
 
@@ -144,22 +190,28 @@ void ClothReactions::findImpulses(const ClothTick& tick) {
         if (!holder) continue;
         Account& account = m_accounts[holder];
         const Vec3 arm = Vec3(tick.to.x.row(i)) - centreOf(*holder);
-        const Vec3 impulse = -m_impulses.row(i).transpose();
+        const bool anchored = tick.garment.is_pinned()[static_cast<size_t>(i)] != 0;
+        Vec3 impulse = -m_impulses.row(i).transpose();
+        if (!anchored) impulse = withinFriction(tick, i, impulse);
+        m_impulses.row(i) += impulse.transpose();  // what is left for shareRest()
         account.taken.head<3>() += impulse;
         account.taken.tail<3>() += arm.cross(impulse);
         account.nodes.push_back(i);
+        account.anchored |= anchored;
+        const Vec3 met =
+            toVec3(holder->getVelocityInLocalPoint(toBullet(arm))) - Vec3(tick.from.v.row(i));
+        account.meeting = std::max(account.meeting, met.norm());
         account.mass += mass;
         account.middle += mass * arm;
     }
 }
 
-/// Of nodes that nobody holds there is a rest where the stepper did not converge. Cloth that only
+/// There is a rest where the stepper did not converge. Cloth that only
 /// dynamic bodies hold must not lose it.
 void ClothReactions::shareRest() {
     Vec3 rest = Vec3::Zero();
     double held = 0.0;
-    for (size_t i = 0; i < m_holder.size(); ++i)
-        if (!m_holder[i]) rest -= m_impulses.row(static_cast<Eigen::Index>(i)).transpose();
+    rest -= m_impulses.colwise().sum().transpose();
     for (const auto& entry : m_accounts) held += entry.second.mass;
     if (!(held > 0.0)) return;
     for (auto& entry : m_accounts) {
@@ -216,6 +268,11 @@ void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Acco
     Vector6 change = both.ldlt().solve(account.taken + account.planned);
     if (!change.allFinite()) return;
     const Vec3 turning = toVec3(body.getAngularVelocity());
+    if (!account.anchored) {
+        // A collision does not give back more than it was, a taut cloth not more than 100 m/s^2.
+        const double most = 2.0 * account.meeting + 100.0 * tick.length;
+        if (change.head<3>().norm() > most) change *= most / change.head<3>().norm();
+    }
     change.tail<3>() = limitedTurn(turning, change.tail<3>(), tick.length);
     for (const Follower& follower : followers) {
         const Vec3 velocity = change.head<3>() + change.tail<3>().cross(follower.arm);
@@ -225,10 +282,10 @@ void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Acco
     account.plan_time = tick.length;
 }
 
-void ClothReactions::apply(double h, const std::vector<DynamicObstacle>& near) {
+void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
     m_last_impulse.setZero();
     const auto is_there = [&](const btRigidBody* body) {
-        for (const DynamicObstacle& obstacle : near)
+        for (const NearSolid& obstacle : near)
             if (obstacle.body == body) return true;
         for (int a = 0; a < m_body.m_anchors.size(); ++a)
             if (m_body.m_anchors[a].m_body == body) return true;

@@ -17,17 +17,20 @@ struct ClothTick {
     const Stepper& stepper;
     const Boundary& boundary;
     const ClothState& from;
-    ClothState& to;  ///< velocities of nodes that rigid bodies hold are changed
-    double length;   ///< (s)
-    const std::vector<DynamicObstacle>& near;  ///< dynamic bodies that the cloth may touch
+    ClothState& to;                      ///< velocities of nodes that rigid bodies hold are changed
+    double length;                       ///< (s)
+    const std::vector<NearSolid>& near;  ///< what the cloth may touch
 };
 
 /// Gives dynamic rigid bodies the impulses that contacts and anchors took from them.
 ///
 /// What a step changed in a node's momentum, less gravity, node forces and the fabric's own forces,
 /// came from outside: from the body that the node is anchored to or touches (itself, or the middle
-/// of an edge or face of it). Momentum is counted in the soft body's node masses. Where nothing but
-/// dynamic bodies supports the cloth, momentum is conserved to rounding.
+/// of an edge or face of it). Cloth that is pinched between a body and another solid hands nothing
+/// on: the two touch each other through it, and Bullet's own contact pushes them apart. What
+/// contacts give keeps within Coulomb's cone: it pushes, and rubs by no more than the friction of
+/// both. Momentum is counted in the soft body's node masses. Where nothing but dynamic bodies
+/// supports the cloth, momentum is conserved to rounding.
 ///
 /// The stepper took the body's motion as given, however light the body is. So body and cloth are
 /// brought to a common motion afterwards, as in an inelastic collision: with the impulse J that the
@@ -47,7 +50,7 @@ class ClothReactions {
     void collect(const ClothTick& tick);
     /// Hands over the part that belongs to a world step of h seconds. Bodies that are neither
     /// anchored to nor near the cloth any more get nothing.
-    void apply(double h, const std::vector<DynamicObstacle>& near);
+    void apply(double h, const std::vector<NearSolid>& near);
 
     /// Impulse given to rigid bodies in the last apply() (N s).
     const Vec3& lastImpulse() const { return m_last_impulse; }
@@ -67,10 +70,15 @@ class ClothReactions {
         double plan_time = 0.0;             ///< that rest (s)
         std::vector<int> nodes;             ///< that touch the body or are anchored to it
         double mass = 0.0;                  ///< of those nodes (kg)
-        Vec3 middle = Vec3::Zero();         ///< sum of mass times arm (kg m)
+        double meeting = 0.0;               ///< fastest that body and nodes met (m/s)
+        bool anchored = false;
+        Vec3 middle = Vec3::Zero();  ///< sum of mass times arm (kg m)
     };
 
     void findHolders(const ClothTick& tick);
+    Vec3 withinFriction(const ClothTick& tick, int node, const Vec3& impulse) const;
+    bool isPinched(const ClothTick& tick, int node, const NearSolid& holder) const;
+    void releasePinching(const ClothTick& tick);
     void findImpulses(const ClothTick& tick);
     void shareRest();
     std::vector<Follower> followersOf(const ClothTick& tick, const btRigidBody& body,
@@ -81,8 +89,9 @@ class ClothReactions {
     std::map<btRigidBody*, Account> m_accounts;
     std::vector<btRigidBody*> m_holder;  ///< |V|: null: nobody
     std::vector<double> m_distance;      ///< |V| (m): to the holder
-    Points m_impulses;                   ///< |V| x 3 (N s): from outside
-    Points m_internal;                   ///< |V| x 3 (N)
+    Points m_touch;     ///< |V| x 3 (m): where the node, or its edge or face, touches
+    Points m_impulses;  ///< |V| x 3 (N s): from outside
+    Points m_internal;  ///< |V| x 3 (N)
     Vec3 m_last_impulse = Vec3::Zero();
 };
 

@@ -82,7 +82,7 @@ SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, do
     }
     showTick();
     writeNodes();
-    m_reactions.apply(m_h, obstacles.dynamicNear(m_body, box.low, box.high, h));
+    m_reactions.apply(m_h, obstacles.solidsNear(m_body, box.low, box.high, h));
     m_tick.begin -= m_h;
     m_sleep.afterStep(m_shown.x, h, obstacles, box.low, box.high);
     return result;
@@ -234,8 +234,8 @@ bool SoftBodyStep::runTick(BulletObstacles& obstacles, double reach) {
     m_tick.to.time = from.time + m_tick.length;
     if (m_report.finite)
         m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_tick.to, m_tick.length,
-                             obstacles.dynamicNear(m_body, box.low, box.high,
-                                                   (m_tick.begin + m_tick.length) / m_time_scale)});
+                             obstacles.solidsNear(m_body, box.low, box.high,
+                                                  (m_tick.begin + m_tick.length) / m_time_scale)});
     const double damping = static_cast<double>(m_body.m_cfg.kDP);
     if (damping > 0.0) m_tick.to.v *= std::pow(1.0 - damping, m_tick.length / m_h);
     return m_report.finite;
