@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 #include "data/errors.h"
 
@@ -18,13 +19,19 @@ std::string folder(const char* variable, const std::string& standard) {
 
 }  // namespace
 
-std::string asset_path(const std::string& relative) {
-    const fs::path path = fs::path(folder("CLOTH_ASSETS", CLOTH_ASSETS_DIR)) / relative;
-    if (!fs::exists(path)) {
-        throw LoadError(path.string(), "", "no such file",
-                        "set the environment variable CLOTH_ASSETS to the project's data/assets");
+std::string asset_path(const std::string& relative, const std::string& installed) {
+    const std::string chosen = folder("CLOTH_ASSETS", "");
+    std::vector<std::string> folders = {chosen};
+    if (chosen.empty()) folders = {installed, CLOTH_ASSETS_DIR, CLOTH_INSTALL_ASSETS_DIR};
+    fs::path path;
+    for (const std::string& place : folders) {
+        if (place.empty()) continue;
+        path = fs::path(place) / relative;
+        if (fs::exists(path)) return path.string();
     }
-    return path.string();
+    throw LoadError(path.string(), "", "no such file",
+                    "set the environment variable CLOTH_ASSETS to the project's data/assets, or to "
+                    "share/fastcloth/assets where it is installed");
 }
 
 std::string model_path(const std::string& relative) {

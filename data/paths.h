@@ -5,10 +5,17 @@
 
 namespace cloth {
 
-/// Path of a file that the project ships: `relative` to data/assets of the source tree, or to the
-/// folder in the environment variable CLOTH_ASSETS.
+// Programs that use an installed FastCloth are compiled with the folder of its assets.
+#ifndef CLOTH_INSTALLED_ASSETS
+#define CLOTH_INSTALLED_ASSETS ""
+#endif
+
+/// Path of a file that the project ships: `relative` to the folder in the environment variable
+/// CLOTH_ASSETS, else to that of the installation the program is compiled for, else to data/assets
+/// of the source tree the library was built from, else to where that was to be installed.
 /// @throws LoadError if there is no such file
-std::string asset_path(const std::string& relative);
+std::string asset_path(const std::string& relative,
+                       const std::string& installed = CLOTH_INSTALLED_ASSETS);
 
 /// Path of a file of Debian's package assimp-testmodels: `relative` to /usr/share/assimp/models, or
 /// to the folder in the environment variable CLOTH_MODELS.
