@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cloth {
+
+struct BulletScenesOptions {
+    std::vector<std::string> scenes;  ///< empty: all
+    std::vector<std::string> solvers = {"bullet", "fast"};
+    std::vector<int> rates = {60};  ///< (Hz)
+    int seconds = 10;               ///< 1 to 600
+    bool list = false;
+    bool videos = true;
+    std::string reference = "quasi-newton-30";  ///< whose last shape is right
+    std::string weights;
+    std::string out = "out/bullet_scenes";
+};
+
+std::string bullet_scenes_usage();
+
+/// @throws UsageError naming the option, or the scenes there are
+BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& arguments);
+
+}  // namespace cloth

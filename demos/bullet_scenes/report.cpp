@@ -1,0 +1,59 @@
+#include "demos/bullet_scenes/report.h"
+
+#include <cmath>
+#include <cstdio>
+
+#include "demos/compare/json_numbers.h"
+#include "demos/compare/machine.h"
+#include "render/replaced_file.h"
+
+namespace cloth {
+
+namespace {
+
+std::string number(double value, const char* format) {
+    if (!std::isfinite(value)) return "-";
+    char text[32];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json scene_row_json(const SceneRow& row) {
+    return {{"scene", row.scene},
+            {"solver", row.solver},
+            {"rate_hz", row.rate_hz},
+            {"finite", row.finite},
+            {"rest_error_mm", json_number(row.rest_error_mm)},
+            {"momentum_error", json_number(row.momentum_error)},
+            {"penetration_max_mm", json_number(row.penetration_max_mm)},
+            {"ms_median", json_number(row.ms_median)},
+            {"ms_median_last_second", json_number(row.ms_median_last_second)}};
+}
+
+std::string scene_row_heading() {
+    return "scene      solver             rate  finite  rest (mm)  momentum  inside (mm)  "
+           "ms/step  last second";
+}
+
+std::string scene_row_text(const SceneRow& row) {
+    char text[200];
+    std::snprintf(
+        text, sizeof text, "%-10s %-18s %4d  %-6s  %9s  %8s  %11s  %7s  %11s", row.scene.c_str(),
+        row.solver.c_str(), row.rate_hz, row.finite ? "yes" : "NO",
+        number(row.rest_error_mm, "%.1f").c_str(), number(row.momentum_error, "%.4f").c_str(),
+        number(row.penetration_max_mm, "%.1f").c_str(), number(row.ms_median, "%.2f").c_str(),
+        number(row.ms_median_last_second, "%.2f").c_str());
+    return text;
+}
+
+void write_scene_report(const std::string& path, const std::vector<SceneRow>& rows) {
+    nlohmann::ordered_json document;
+    document["machine"] = machine_name();
+    document["rows"] = nlohmann::ordered_json::array();
+    for (const SceneRow& row : rows) document["rows"].push_back(scene_row_json(row));
+    write_text_file(path, document.dump(2) + "\n");
+}
+
+}  // namespace cloth

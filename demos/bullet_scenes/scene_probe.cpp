@@ -1,0 +1,135 @@
+#include "demos/bullet_scenes/scene_probe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bullet_ext/softBodyGarment.h"
+#include "demos/hard_cases/pictures.h"
+
+namespace cloth {
+
+namespace {
+
+bool isNear(const btVector3& x) {
+    constexpr btScalar kFar = 1000;  // m
+    return std::isfinite(x.length()) && x.length() < kFar;
+}
+
+bool isNear(const btSoftBody& body) {
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!isNear(body.m_nodes[i].m_x)) return false;
+    return true;
+}
+
+bool mayTouch(const btSoftBody& cloth, const btRigidBody& body) {
+    const auto& disabled = cloth.m_collisionDisabledObjects;
+    return disabled.findLinearSearch(&body) == disabled.size();
+}
+
+/// A soft body without faces as crossed ribbons along its links.
+TriMesh ribbons(const btSoftBody& body) {
+    constexpr double kHalf = 8e-3;  // m
+    TriMesh mesh{Points(8 * body.m_links.size(), 3), Faces(4 * body.m_links.size(), 3)};
+    for (int l = 0; l < body.m_links.size(); ++l) {
+        const Vec3 a = toVec3(body.m_links[l].m_n[0]->m_x), b = toVec3(body.m_links[l].m_n[1]->m_x);
+        const Vec3 along = (b - a).stableNormalized();
+        const Vec3 side = along.unitOrthogonal(), other = along.cross(side);
+        int v = 8 * l, f = 4 * l;
+        for (const Vec3& across : {side, other}) {
+            mesh.vertices.row(v) = a - kHalf * across;
+            mesh.vertices.row(v + 1) = a + kHalf * across;
+            mesh.vertices.row(v + 2) = b - kHalf * across;
+            mesh.vertices.row(v + 3) = b + kHalf * across;
+            mesh.faces.row(f++) << v, v + 1, v + 2;
+            mesh.faces.row(f++) << v + 1, v + 3, v + 2;
+            v += 4;
+        }
+    }
+    return mesh;
+}
+
+TriMesh surfaceOf(const ShapePart& part, const Pose& pose) {
+    Obstacle obstacle;
+    obstacle.shape = part.shape;
+    obstacle.half_extents = part.half_extents;
+    obstacle.radius = part.radius;
+    obstacle.pose1 = pose * part.frame;
+    obstacle.faces = part.faces;
+    obstacle.x1 =
+        (part.vertices * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+    return surface_of(obstacle);
+}
+
+}  // namespace
+
+SceneProbe::Solid& SceneProbe::solidOf(const btRigidBody& body) {
+    Solid& solid = m_solids[&body];
+    if (solid.parts.empty()) {
+        solid.parts = partsOfShape(*body.getCollisionShape());
+        for (const ShapePart& part : solid.parts) solid.distances.emplace_back(part);
+    }
+    return solid;
+}
+
+bool SceneProbe::finite() const {
+    for (const btSoftBody* body : m_scene.cloth())
+        if (!isNear(*body)) return false;
+    for (const btSoftBody* body : m_scene.others())
+        if (!isNear(*body)) return false;
+    return std::all_of(m_scene.rigid().begin(), m_scene.rigid().end(), [](const auto& body) {
+        return isNear(body->getWorldTransform().getOrigin());
+    });
+}
+
+double SceneProbe::deepest() {
+    constexpr double kReach = 0.2;  // m
+    double depth = 0.0;
+    for (const auto& body : m_scene.rigid()) {
+        const Solid& solid = solidOf(*body);
+        const Pose inverse = toPose(body->getWorldTransform()).inverse();
+        for (const btSoftBody* cloth : m_scene.cloth())
+            for (int i = 0; mayTouch(*cloth, *body) && i < cloth->m_nodes.size(); ++i) {
+                if (!(cloth->m_nodes[i].m_im > 0)) continue;
+                const Vec3 local = inverse * toVec3(cloth->m_nodes[i].m_x);
+                for (const PartDistance& part : solid.distances)
+                    depth = std::max(depth, -part.at(local, kReach));
+            }
+    }
+    return depth;
+}
+
+Vec3 SceneProbe::momentum() const {
+    Vec3 sum = Vec3::Zero();
+    for (const btSoftBody* cloth : m_scene.cloth())
+        for (int i = 0; i < cloth->m_nodes.size(); ++i)
+            if (cloth->m_nodes[i].m_im > 0)
+                sum += toVec3(cloth->m_nodes[i].m_v) / static_cast<double>(cloth->m_nodes[i].m_im);
+    for (const auto& body : m_scene.rigid())
+        if (body->getInvMass() > 0)
+            sum += toVec3(body->getLinearVelocity()) / static_cast<double>(body->getInvMass());
+    return sum;
+}
+
+std::vector<Points> SceneProbe::cloth() const {
+    std::vector<Points> all;
+    for (const btSoftBody* body : m_scene.cloth()) all.push_back(nodePositions(*body));
+    return all;
+}
+
+ScenePicture SceneProbe::picture() {
+    ScenePicture picture;
+    for (const auto& body : m_scene.rigid()) {
+        const Pose pose = toPose(body->getWorldTransform());
+        for (const ShapePart& part : solidOf(*body).parts)
+            if (part.shape != ObstacleShape::plane) picture.rigid.push_back(surfaceOf(part, pose));
+    }
+    for (const btSoftBody* body : m_scene.cloth())
+        picture.cloth.push_back({nodePositions(*body), faceNodes(*body)});
+    for (const btSoftBody* body : m_scene.others())
+        picture.others.push_back(body->m_faces.size()
+                                     ? TriMesh{nodePositions(*body), faceNodes(*body)}
+                                     : ribbons(*body));
+    return picture;
+}
+
+}  // namespace cloth

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data/mesh.h"
+#include "demos/bullet_scenes/scene_solver.h"
+#include "demos/bullet_scenes/worlds/scenes.h"
+
+namespace cloth {
+
+/// How a scene is run.
+struct SceneRunSettings {
+    std::string solver = "fast";  ///< a name of SceneSolvers
+    int rate = 60;                ///< steps per second, 24 to 480
+    double seconds = 10.0;
+    int pictures_per_second = 0;  ///< 0: nothing is recorded
+};
+
+/// What is to be drawn of one moment: surfaces in the world's frame (m).
+struct ScenePicture {
+    std::vector<TriMesh> rigid, cloth, others;
+};
+
+/// What a run shows. Numbers that a scene has no meaning for are NaN.
+struct SceneRow {
+    std::string scene, solver;
+    int rate_hz = 0;
+    bool finite = false;                 ///< all nodes and bodies, to the end
+    double rest_error_mm = 0.0;          ///< RMS distance of the last shape to the reference's
+    double momentum_error = 0.0;         ///< of the closed twin: |p(t) - p(0)| / |p(0)| at its end
+    double penetration_max_mm = 0.0;     ///< deepest cloth node inside a rigid body, all steps
+    double ms_median = 0.0;              ///< wall time of a stepSimulation()
+    double ms_median_last_second = 0.0;  ///< the same, when what can sleep sleeps
+};
+
+struct SceneResult {
+    SceneRow row;
+    std::vector<Points> last;  ///< of each cloth (|V| x 3, m)
+    std::vector<ScenePicture> pictures;
+    std::vector<std::string> messages;  ///< of our solver
+};
+
+using SceneProgress = std::function<void(int done, int all)>;
+
+/// Runs the scene for its time; the rest error is left NaN.
+SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& settings,
+                      const SceneSolvers& solvers, const SceneProgress& progress = {});
+
+/// RMS distance between two last shapes (mm); NaN if their sizes differ or there is none.
+double shape_distance_mm(const std::vector<Points>& a, const std::vector<Points>& b);
+
+/// Runs the scene's closed twin for a second: how much of the momentum was lost or made, relative
+/// to what there was. NaN if the scene has none.
+double momentum_error(const SceneRecipe& recipe, const SceneRunSettings& settings,
+                      const SceneSolvers& solvers);
+
+}  // namespace cloth
