@@ -144,6 +144,7 @@ void resize(SurfaceContacts& contacts, Eigen::Index count) {
                          &contacts.normal0, &contacts.normal1})
         rows->resize(count, 3);
     contacts.distance.resize(count);
+    contacts.ridges.clear();
 }
 
 }  // namespace

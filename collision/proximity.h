@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -8,6 +9,15 @@
 namespace cloth {
 
 enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
+
+/// Contact of a point within a garment's face, or on its edge, with an obstacle: the tangent plane
+/// of the surface point that was closest at t, at t + dt. See RidgeFinder.
+struct RidgeContact {
+    int face = -1;                 ///< of the garment
+    std::array<double, 3> weight;  ///< of the face's corners, 0 to 1
+    Vec3 normal;                   ///< unit, outward
+    double height = 0.0;           ///< of the plane: surface point . normal (m)
+};
 
 /// Nearest surface points of a set of query points, one row each. The closest point is chosen on
 /// the surfaces at t and carried along to t + dt (same face, same barycentric coordinates). Rows
@@ -19,6 +29,7 @@ struct SurfaceContacts {
     Points point0, point1;    ///< |V| x 3 (m): the surface point at t and at t + dt
     Points normal0, normal1;  ///< |V| x 3: unit face normal there (outward) at t and at t + dt
     VectorX distance;         ///< |V| (m): signed distance at t, negative inside; +inf: none
+    std::vector<RidgeContact> ridges;  ///< faces and edges over ridges; a query leaves it empty
 
     bool has(Eigen::Index i) const { return obstacle[static_cast<size_t>(i)] >= 0; }
     /// Mean velocity of the surface point over the step (m/s).

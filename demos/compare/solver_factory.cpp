@@ -66,6 +66,7 @@ std::unique_ptr<Stepper> make_newton(const std::string& name, const ComparisonSc
 }
 
 std::unique_ptr<Stepper> make_quasi_newton(const std::string& name, const ComparisonScene& scene) {
+    if (name == "quasi-newton") return make_physics_cloth(scene.garment());
     const size_t cross = name.find('x');
     const std::string first = name.substr(0, cross);
     QuasiNewtonSettings settings;
@@ -124,7 +125,7 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton-K, quasi-newton-KxS, xpbd-N or a network of " +
+        "quasi-newton, quasi-newton-K, quasi-newton-KxS, xpbd-N or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") + "), NAME or NAME+K");
 }
 

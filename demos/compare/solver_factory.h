@@ -31,9 +31,12 @@ struct SolverSettings {
 /// | bullet-KxS         | K iterations, S sub-steps                                     |
 /// | reference          | Newton's method, converged                                    |
 /// | newton-K           | K iterations of it                                            |
+/// | quasi-newton       | quasi-Newton with error control, guarded: as it should be used|
 /// | quasi-newton-K     | K quasi-Newton iterations                                     |
+/// | quasi-newton-KxS   | the same in S sub-steps                                       |
 /// | xpbd-N             | springs relaxed in N sub-steps                                |
-/// | VARIANT[+K]        | the network VARIANT.safetensors and K quasi-Newton iterations |
+/// | VARIANT            | the network VARIANT.safetensors with error control, guarded   |
+/// | VARIANT+K          | the network and exactly K quasi-Newton iterations             |
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
 ///
 /// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights

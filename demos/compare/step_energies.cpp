@@ -9,6 +9,7 @@ namespace cloth {
 
 void StepEnergies::begin(const ClothState& state, const Boundary& boundary, double dt) {
     m_proximity.query(state.x, boundary, m_contacts);
+    m_ridges.find(m_proximity, boundary, state.x, m_contacts);
     m_potential.begin_step(state, boundary, m_contacts, dt);
     Points x;
     starting_guess(m_potential.garment(), state, boundary, m_contacts, dt,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/proximity.h"
+#include "collision/ridge_contacts.h"
 #include "gnn/physics/incremental_potential.h"
 
 namespace cloth {
@@ -8,7 +8,7 @@ namespace cloth {
 /// The incremental potential of one step, with the energies that a solver's result is held against.
 class StepEnergies {
  public:
-    explicit StepEnergies(const Garment& garment) : m_potential(garment) {}
+    explicit StepEnergies(const Garment& garment) : m_ridges(garment), m_potential(garment) {}
 
     /// Sets up the step from `state` across `boundary`.
     void begin(const ClothState& state, const Boundary& boundary, double dt);
@@ -27,6 +27,7 @@ class StepEnergies {
 
  private:
     Proximity m_proximity;
+    RidgeFinder m_ridges;
     SurfaceContacts m_contacts;
     IncrementalPotential m_potential;
     double m_guess_energy = 0.0;

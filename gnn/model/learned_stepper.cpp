@@ -32,12 +32,18 @@ QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
         throw ArgumentError("refine.iterations",
                             std::to_string(refine.iterations) + " is outside 0 to 1000",
                             "use 10, or 0 for the network alone");
+    if (refine.least < 0 || refine.least > refine.iterations)
+        throw ArgumentError("refine.least",
+                            std::to_string(refine.least) + " is outside 0 to refine.iterations, " +
+                                std::to_string(refine.iterations),
+                            "use 10, or 0 to stop as soon as the tolerance is met");
     if (!(refine.tolerance >= 0.0) || refine.tolerance > 1e6)
         throw ArgumentError("refine.tolerance",
                             std::to_string(refine.tolerance) + " is outside 0 to 1e6",
                             "use 0 for a fixed number of iterations, or a residual such as 1");
     QuasiNewtonSettings solver;
     solver.iterations = settings.refine.iterations;
+    solver.least_iterations = settings.refine.least;
     solver.tolerance = settings.refine.tolerance;
     solver.potential = settings.potential;
     return solver;
@@ -52,6 +58,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_settings(settings),
       m_graph(build_cloth_graph(garment, m_predictor->config().graph_settings())),
       m_proximity(settings.proximity),
+      m_ridges(garment),
       m_resolver(garment),
       m_potential(garment, settings.potential),
       m_solver(garment, refinement(settings)),
@@ -60,6 +67,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
 
 std::string LearnedStepper::name() const {
     const Refinement& refine = m_settings.refine;
+    if (refine.tolerance > 0.0 && refine.least > 0) return m_predictor->config().variant;
     char text[32];
     if (refine.tolerance > 0.0)
         std::snprintf(text, sizeof text, "+%.0e", refine.tolerance);
@@ -76,6 +84,7 @@ StepReport LearnedStepper::step(const Boundary& boundary, double dt, ClothState&
     }
     Stopwatch watch;
     m_proximity.query(state.x, boundary, m_contacts);
+    m_ridges.find(m_proximity, boundary, state.x, m_contacts);
     report.times.proximity = watch.lap_ms();
     predict(boundary, dt, state, report);
     watch.lap_ms();

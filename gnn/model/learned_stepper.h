@@ -4,6 +4,7 @@
 #include <string>
 
 #include "collision/resolve_surface.h"
+#include "collision/ridge_contacts.h"
 #include "gnn/model/predictor.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
@@ -12,19 +13,23 @@ namespace cloth {
 
 /// How much of the quasi-Newton step follows the network.
 ///
+///     settings.refine = Refinement();                    // the default: error control
 ///     settings.refine = Refinement::off();               // the paper's method
 ///     settings.refine = 10;                              // a fixed number of iterations
 ///     settings.refine = Refinement::until(1.0, 30);      // until the residual is below 1, or 30
 struct Refinement {
-    int iterations = 10;     ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
-                             ///< Off blows up in long motions; 2 lose a T-shirt in a jump
-    double tolerance = 0.0;  ///< of StepReport::residual; 0: all iterations run
+    int iterations = 100;  ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
+                           ///< Off blows up in long motions; 2 lose a T-shirt in a jump
+    int least = 10;        ///< but not fewer than these
+    double tolerance = 3.0;  ///< of StepReport::residual; 0: all iterations run
 
+    /// Ten iterations, and up to a hundred in frames whose residual stays above 3.
     Refinement() = default;
-    Refinement(int count) : iterations(count) {}
+    Refinement(int count) : iterations(count), least(count), tolerance(0.0) {}
     static Refinement off() { return Refinement(0); }
     static Refinement until(double tolerance, int at_most) {
         Refinement refinement(at_most);
+        refinement.least = 0;
         refinement.tolerance = tolerance;
         return refinement;
     }
@@ -55,7 +60,8 @@ class LearnedStepper : public Stepper {
     LearnedStepper(const Garment& garment, std::shared_ptr<Predictor> predictor,
                    LearnedStepperSettings settings = {});
 
-    /// The network's variant and its refinement, such as "fast+10" or, to a tolerance, "fast+1e-2".
+    /// The network's variant, such as "fast"; with a fixed number of iterations "fast+10", with a
+    /// tolerance alone "fast+1e-02".
     std::string name() const override;
     double fixed_dt() const override { return m_predictor->config().dt; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
@@ -80,6 +86,7 @@ class LearnedStepper : public Stepper {
     LearnedStepperSettings m_settings;
     ClothGraph m_graph;
     Proximity m_proximity;
+    RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
     IncrementalPotential m_potential;
     QuasiNewton m_solver;

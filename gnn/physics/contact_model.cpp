@@ -28,6 +28,16 @@ void ContactModel::begin_step(const IncrementalPotential& potential,
         m_contacts.push_back(
             {vertex, row_of[i], normal, potential.settings().contact_distance + height});
     }
+    m_ridges.clear();
+    for (const RidgeEnergy::Plane& plane : potential.ridges().planes()) {
+        Ridge ridge{plane.vertex, {}, plane.weight, plane.normal, plane.offset};
+        for (size_t k = 0; k < 3; ++k) {
+            ridge.row[k] = row_of[static_cast<size_t>(plane.vertex[k])];
+            // what does not move has no part in the blocks
+            if (ridge.row[k] < 0) ridge.row[k] = 0, ridge.weight[k] = 0.0;
+        }
+        m_ridges.push_back(ridge);
+    }
     const auto& sliders = potential.friction().sliders();
     for (size_t k = 0; k < sliders.size(); ++k) {
         const int row = row_of[static_cast<size_t>(sliders[k].vertex)];
@@ -43,6 +53,11 @@ void ContactModel::linearise(const IncrementalPotential& potential, const Points
         contact.depth = contact.surface - x.row(contact.vertex).dot(contact.normal);
         contact.stiffness = 6.0 * m_weight * std::max(contact.depth, 0.0);
     }
+    const auto& planes = potential.ridges().planes();
+    for (size_t k = 0; k < m_ridges.size(); ++k) {
+        m_ridges[k].depth = planes[k].depth(x);
+        m_ridges[k].stiffness = 6.0 * m_weight * std::max(m_ridges[k].depth, 0.0);
+    }
     const FrictionEnergy& friction = potential.friction();
     for (size_t k = 0; k < m_sliders.size(); ++k) {
         const FrictionEnergy::Slider& slider = friction.sliders()[m_slider_index[k]];
@@ -55,16 +70,26 @@ void ContactModel::linearise(const IncrementalPotential& potential, const Points
 
 bool ContactModel::anticipate(const Points& step) {
     bool any = !m_sliders.empty();
-    for (Contact& contact : m_contacts) {
+    const auto stiffen = [&](auto& contact, double rise) {
         const double before = std::max(contact.depth, 0.0);
-        const double after = contact.depth - step.row(contact.row).dot(contact.normal);
+        const double after = contact.depth - rise;
         // Slope of the secant of the force 3 w depth^2.
         if (after > before)
             contact.stiffness =
                 3.0 * m_weight * (before + std::min(after, before + anticipated_depth));
         any = any || contact.stiffness > 0.0;
-    }
+    };
+    for (Contact& contact : m_contacts) stiffen(contact, step.row(contact.row).dot(contact.normal));
+    for (Ridge& ridge : m_ridges) stiffen(ridge, rise(ridge, step));
     return any;
+}
+
+/// Of the point of a ridge, along its normal (m).
+double ContactModel::rise(const Ridge& ridge, const Points& step) {
+    double rise = 0.0;
+    for (size_t k = 0; k < 3; ++k)
+        rise += ridge.weight[k] * step.row(ridge.row[k]).dot(ridge.normal);
+    return rise;
 }
 
 void ContactModel::add_product(const Points& direction, Points& product) const {
@@ -72,6 +97,12 @@ void ContactModel::add_product(const Points& direction, Points& product) const {
         if (contact.stiffness == 0.0) continue;
         const double along = direction.row(contact.row).dot(contact.normal);
         product.row(contact.row) += (contact.stiffness * along) * contact.normal.transpose();
+    }
+    for (const Ridge& ridge : m_ridges) {
+        if (ridge.stiffness == 0.0) continue;
+        const Vec3 force = ridge.stiffness * rise(ridge, direction) * ridge.normal;
+        for (size_t k = 0; k < 3; ++k)
+            product.row(ridge.row[k]) += ridge.weight[k] * force.transpose();
     }
     for (const Slider& slider : m_sliders) {
         const Vec3 motion = direction.row(slider.row);

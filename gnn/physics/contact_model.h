@@ -1,15 +1,17 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "gnn/physics/incremental_potential.h"
 
 namespace cloth {
 
-/// What the obstacles add to the constant matrix of the quasi-Newton method: a symmetric positive
-/// semi-definite 3 x 3 block for each vertex in contact or held by friction,
+/// What the obstacles add to the constant matrix of the quasi-Newton method: symmetric positive
+/// semi-definite blocks for each vertex or face in contact or held by friction,
 ///
 ///     contact    6 w depth n n'                         depth = eps - d > 0
+///     ridge      the same, shared out over the corners of a face
 ///     friction   mu N / sqrt(s^2 + |u|^2) (I - n n')
 ///
 /// Contact is flat at depth 0, where the starting guess leaves the vertices, so the tangent
@@ -35,7 +37,7 @@ class ContactModel {
     void limit_depth(Points& trial) const;
 
     /// Whether any obstacle is near enough to matter.
-    bool active() const { return !m_contacts.empty() || !m_sliders.empty(); }
+    bool active() const { return !m_contacts.empty() || !m_sliders.empty() || !m_ridges.empty(); }
 
  private:
     struct Contact {
@@ -46,14 +48,25 @@ class ContactModel {
         double depth = 0.0;      ///< at the point of linearisation, negative outside (m)
         double stiffness = 0.0;  ///< (N/m)
     };
+    struct Ridge {
+        std::array<int, 3> vertex, row;
+        std::array<double, 3> weight;
+        Vec3 normal;
+        double surface;
+        double depth = 0.0;
+        double stiffness = 0.0;
+    };
     struct Slider {
         int row;
         Vec3 normal;
         double stiffness = 0.0;  ///< (N/m)
     };
 
+    static double rise(const Ridge& ridge, const Points& step);
+
     double m_weight = 0.0;  ///< w (N/m^2)
     std::vector<Contact> m_contacts;
+    std::vector<Ridge> m_ridges;
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;  ///< of the potential's friction().sliders()
 };

@@ -84,6 +84,13 @@ double relative_motion(const Garment& garment, const Boundary& boundary, double 
     return farthest;
 }
 
+std::unique_ptr<Stepper> make_physics_cloth(const Garment& garment,
+                                            const QuasiNewtonSettings& settings,
+                                            const GuardSettings& guard) {
+    auto stepper = std::make_unique<QuasiNewtonStepper>(garment, settings);
+    return std::make_unique<GuardedStepper>(garment, std::move(stepper), guard);
+}
+
 GuardedStepper::GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> inner,
                                GuardSettings settings)
     : m_garment(&garment), m_inner(std::move(inner)), m_settings(std::move(settings)) {

@@ -13,12 +13,8 @@ struct GuardSettings {
     /// to the garment) are cut, 0.01 to 1. Contacts are found at the start of a step within the
     /// proximity's radius: what comes from farther away would pass through.
     double max_motion = 0.1;
-    int max_substeps = 16;  ///< 1 to 64
-    QuasiNewtonSettings solver = [] {
-        QuasiNewtonSettings settings;
-        settings.iterations = 5;  // per sub-step
-        return settings;
-    }();
+    int max_substeps = 16;                                                ///< 1 to 64
+    QuasiNewtonSettings solver = QuasiNewtonSettings::controlled(5, 50);  ///< of a sub-step
 };
 
 /// Another stepper wherever it can be trusted, the quasi-Newton solver in sub-steps elsewhere:
@@ -58,6 +54,17 @@ class GuardedStepper : public Stepper {
     int m_last_substeps = 1;
     long m_guarded_steps = 0;
 };
+
+/// The quasi-Newton solver as it should be used: with error control, and guarded.
+///
+///     btGnnSoftBodySolver solver([](const Garment& garment) {
+///         return make_physics_cloth(garment);
+///     });
+///
+/// Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
+std::unique_ptr<Stepper> make_physics_cloth(
+    const Garment& garment, const QuasiNewtonSettings& settings = QuasiNewtonSettings::controlled(),
+    const GuardSettings& guard = {});
 
 /// How far (m) pins, and surfaces that may touch the garment, move at most during the step,
 /// relative to the garment's mean motion. Meshes: their vertices in the box that garment and motion

@@ -31,6 +31,7 @@ ImplicitStepper::ImplicitStepper(const Garment& garment, const ImplicitSettings&
       m_potential(garment, settings.potential),
       m_newton(garment, settings),
       m_proximity(settings.proximity),
+      m_ridges(garment),
       m_resolver(garment) {
     if (settings.contact_updates < 0 || settings.contact_updates > 10)
         throw ArgumentError("ImplicitSettings.contact_updates",
@@ -76,10 +77,13 @@ bool ImplicitStepper::minimise(const Boundary& boundary, const ClothState& state
 }
 
 void ImplicitStepper::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {
-    if (boundary.obstacles.empty())
+    if (boundary.obstacles.empty()) {
         m_contacts.obstacle.clear();
-    else
-        m_proximity.query(x, boundary, m_contacts, end);
+        m_contacts.ridges.clear();
+        return;
+    }
+    m_proximity.query(x, boundary, m_contacts, end);
+    m_ridges.find(m_proximity, boundary, x, m_contacts, end);
 }
 
 void ImplicitStepper::choose_start(const Boundary& boundary, const ClothState& state, double dt) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/resolve_surface.h"
+#include "collision/ridge_contacts.h"
 #include "gnn/physics/newton.h"
 #include "gnn/stepper.h"
 
@@ -52,6 +53,7 @@ class ImplicitStepper : public Stepper {
     IncrementalPotential m_potential;
     Newton m_newton;
     Proximity m_proximity;
+    RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     VectorX m_distance;

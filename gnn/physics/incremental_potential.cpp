@@ -25,8 +25,15 @@ void require_setting(const char* name, double value, bool zero_allowed) {
                             "see the range in the comment of PotentialSettings");
 }
 
-void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, Eigen::Index vertices) {
+void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, const Garment& garment) {
+    for (const RidgeContact& ridge : contacts.ridges)
+        if (ridge.face < 0 || ridge.face >= garment.face_count())
+            throw ArgumentError("contacts.ridges",
+                                "names face " + std::to_string(ridge.face) + " of " +
+                                    std::to_string(garment.face_count()),
+                                "find the ridges with the finder of this garment");
     if (contacts.obstacle.empty()) return;
+    const Eigen::Index vertices = garment.vertex_count();
     require_rows("contacts.obstacle", static_cast<Eigen::Index>(contacts.obstacle.size()),
                  vertices);
     require_rows("contacts.point0", contacts.point0.rows(), vertices);
@@ -51,9 +58,11 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
       m_strain(garment),
       m_bending(garment),
       m_gravity(garment),
-      m_inertia(garment) {
+      m_inertia(garment),
+      m_ridges(garment) {
     require_setting("contact_distance", settings.contact_distance, true);
     require_setting("contact_weight", settings.contact_weight, true);
+    require_setting("ridge_distance", settings.ridge_distance, true);
     require_setting("friction_scale", settings.friction_scale, true);
     require_setting("friction_distance", settings.friction_distance, true);
     require_setting("friction_slip", settings.friction_slip, false);
@@ -69,13 +78,14 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     require_rows("state.v", state.v.rows(), count);
     if (boundary.accelerations.rows() > 0)
         require_rows("boundary.accelerations", boundary.accelerations.rows(), count);
-    validate_contacts(contacts, boundary.obstacles.size(), count);
+    validate_contacts(contacts, boundary.obstacles.size(), *m_garment);
 
     m_dt = dt;
     m_contacts = contacts;
     m_inertia.begin_step(state, dt);
     m_gravity.begin_step(boundary.gravity, boundary.accelerations);
     m_contact.begin_step(contacts, m_settings.contact_distance);
+    m_ridges.begin_step(contacts, m_settings.ridge_distance);
     m_friction.begin_step(
         *m_garment, state, boundary, contacts,
         {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip,
@@ -105,7 +115,8 @@ EnergyTerms IncrementalPotential::terms(const Points& x) const {
     terms.bending = m_bending.value(x);
     terms.gravity = m_gravity.value(x);
     terms.inertia = m_inertia.value(x);
-    terms.contact = m_contact.value(x, m_settings.contact_weight);
+    terms.contact = m_contact.value(x, m_settings.contact_weight) +
+                    m_ridges.value(x, m_settings.contact_weight);
     terms.friction = m_friction.value(x);
     return terms;
 }
@@ -121,7 +132,8 @@ double IncrementalPotential::value_gradient(const Points& x, Points& gradient) c
     terms.bending = m_bending.add_gradient(x, gradient);
     terms.gravity = m_gravity.add_gradient(x, gradient);
     terms.inertia = m_inertia.add_gradient(x, gradient);
-    terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient);
+    terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient) +
+                    m_ridges.add_gradient(x, m_settings.contact_weight, gradient);
     terms.friction = m_friction.add_gradient(x, gradient);
     mask_pins(gradient);
     return terms.total();
@@ -149,6 +161,7 @@ void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>&
     m_bending.add_hessian(x, *m_pattern, kind, values);
     m_inertia.add_hessian(*m_pattern, values);
     m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
+    m_ridges.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
     m_friction.add_hessian(x, *m_pattern, values);
 }
 

@@ -12,6 +12,7 @@
 #include "gnn/physics/friction.h"
 #include "gnn/physics/gravity.h"
 #include "gnn/physics/inertia.h"
+#include "gnn/physics/ridge_energy.h"
 #include "gnn/physics/strain.h"
 
 namespace cloth {
@@ -20,6 +21,9 @@ namespace cloth {
 struct PotentialSettings {
     double contact_distance = 4e-3;  ///< cloth is pushed away below this distance (m), 1e-3 to 1e-2
     double contact_weight = 5e5;     ///< w in w max(0, eps - d)^3 (N/m^2), 1e3 to 1e6
+    /// Faces and edges that bend over ridges of obstacles are pushed away below this distance (m),
+    /// 0 to contact_distance; 0: only vertices feel obstacles.
+    double ridge_distance = 1e-3;
     double friction_scale = 1.0;  ///< scales the obstacles' friction coefficients; 0: no friction
     double friction_distance = 6e-3;  ///< friction acts on vertices closer than this (m)
     double friction_slip = 1e-4;      ///< slip (m) below which friction is smoothed
@@ -30,7 +34,9 @@ struct PotentialSettings {
 
 /// The parts of the incremental potential (J).
 struct EnergyTerms {
-    double strain = 0, bending = 0, gravity = 0, inertia = 0, contact = 0, friction = 0;
+    double strain = 0, bending = 0, gravity = 0, inertia = 0;
+    double contact = 0;  ///< of vertices and of ridges
+    double friction = 0;
     double total() const { return strain + bending + gravity + inertia + contact + friction; }
 };
 
@@ -80,6 +86,7 @@ class IncrementalPotential {
     double dt() const { return m_dt; }
     const SurfaceContacts& contacts() const { return m_contacts; }
     const Points& inertial_target() const { return m_inertia.target(); }  ///< x_t + dt v_t
+    const RidgeEnergy& ridges() const { return m_ridges; }                ///< of this step
     const FrictionEnergy& friction() const { return m_friction; }         ///< of this step
 
     void set_contact_weight(double weight) { m_settings.contact_weight = weight; }
@@ -99,6 +106,7 @@ class IncrementalPotential {
     GravityEnergy m_gravity;
     InertiaEnergy m_inertia;
     ContactEnergy m_contact;
+    RidgeEnergy m_ridges;
     FrictionEnergy m_friction;
 };
 

@@ -35,7 +35,8 @@ double shorter_step(double step, double energy, double slope, double trial_energ
 QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     : m_settings(settings), m_matrix(garment) {
     check_range("iterations", settings.iterations, 0, 10000);
-    check_range("tolerance", settings.tolerance, 0.0, 1.0);
+    check_range("tolerance", settings.tolerance, 0.0, 1e6);
+    check_range("least_iterations", settings.least_iterations, 0, settings.iterations);
     check_range("history", settings.history, 0, 50);
     check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
     const Eigen::Index free = m_matrix.free_count();
@@ -59,7 +60,8 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
         return report;
     }
     const auto met = [&] { return report.residual <= m_settings.tolerance; };
-    while (!met() && report.iterations < m_settings.iterations) {
+    while (report.iterations < m_settings.iterations) {
+        if (met() && report.iterations >= m_settings.least_iterations) break;
         if (!iterate(potential, x, report)) break;
     }
     report.converged = met();
@@ -98,6 +100,7 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
         if (!line_search(potential, x, report)) return false;
     }
     ++report.iterations;
+    report.last_step = m_direction.norm() / std::sqrt(static_cast<double>(m_direction.rows()));
     m_history.push(m_direction, m_gradient, m_next_gradient);
     m_gradient.swap(m_next_gradient);
     update_residual(potential, report);

@@ -39,11 +39,14 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
       m_potential(garment, settings.potential),
       m_solver(garment, settings),
       m_proximity(proximity),
+      m_ridges(garment),
       m_resolver(garment) {
 }
 
 std::string QuasiNewtonStepper::name() const {
-    return "quasi-newton-" + std::to_string(m_solver.settings().iterations);
+    const QuasiNewtonSettings& settings = m_solver.settings();
+    if (settings.tolerance > 0.0) return "quasi-newton";
+    return "quasi-newton-" + std::to_string(settings.iterations);
 }
 
 StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothState& state) {
@@ -74,10 +77,13 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
 }
 
 void QuasiNewtonStepper::find_contacts(const Boundary& boundary, const ClothState& state) {
-    if (boundary.obstacles.empty())
+    if (boundary.obstacles.empty()) {
         m_contacts.obstacle.clear();
-    else
-        m_proximity.query(state.x, boundary, m_contacts);
+        m_contacts.ridges.clear();
+        return;
+    }
+    m_proximity.query(state.x, boundary, m_contacts);
+    m_ridges.find(m_proximity, boundary, state.x, m_contacts);
 }
 
 void QuasiNewtonStepper::resolve(const Boundary& boundary, StepReport& report) {

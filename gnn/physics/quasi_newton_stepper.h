@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/resolve_surface.h"
+#include "collision/ridge_contacts.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
@@ -22,7 +23,7 @@ class QuasiNewtonStepper : public Stepper {
     QuasiNewtonStepper(const Garment& garment, const QuasiNewtonSettings& settings,
                        const ProximitySettings& proximity = {});
 
-    /// "quasi-newton-K" with K iterations.
+    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as a tolerance needs.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     bool internal_forces(const Points& x, Points& forces) const override {
@@ -38,6 +39,7 @@ class QuasiNewtonStepper : public Stepper {
     IncrementalPotential m_potential;
     QuasiNewton m_solver;
     Proximity m_proximity;
+    RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     Points m_x, m_v;  ///< |V| x 3: the new positions and velocities

@@ -3,27 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/direction.h"
+
 namespace cloth {
-namespace {
-
-/// Unit direction from the nearest surface point at t in which the distance grows.
-Vec3 outward(const SurfaceContacts& contacts, Eigen::Index i, const Points& x) {
-    const Vec3 away = x.row(i) - contacts.point0.row(i);
-    const double length = away.norm();
-    if (length < 1e-6) return contacts.normal0.row(i);
-    return away * ((contacts.distance[i] < 0.0 ? -1.0 : 1.0) / length);
-}
-
-/// `v` turned by the shortest rotation from one unit vector to another.
-Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) {
-    const Vec3 axis = from.cross(to);
-    const double cosine = from.dot(to);
-    if (cosine < -0.999) return to;  // the rotation is not defined; no surface turns so far
-    const Vec3 across = axis.cross(v);
-    return v + across + axis.cross(across) / (1.0 + cosine);
-}
-
-}  // namespace
 
 void RidingPlanes::begin_step(const Garment& garment, const Points& x, const Boundary& boundary,
                               const SurfaceContacts& contacts, double distance, int substeps) {
@@ -46,7 +28,7 @@ void RidingPlanes::add_plane(Eigen::Index i, const Points& x, const SurfaceConta
     plane.vertex = i;
     plane.point = contacts.point0.row(i);
     plane.point_move = contacts.point1.row(i) - contacts.point0.row(i);
-    plane.normal = outward(contacts, i, x);
+    plane.normal = direction_at_start(contacts, i, x);
     plane.normal_move =
         turned(plane.normal, contacts.normal0.row(i), contacts.normal1.row(i)) - plane.normal;
     plane.friction = friction;

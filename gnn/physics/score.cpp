@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "collision/ridge_contacts.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 
@@ -16,9 +17,13 @@ double ratio(double part, double whole) {
     return std::abs(part) <= smallest ? 0.0 : part / std::max(whole, smallest);
 }
 
-SurfaceContacts contacts_of(const ClothState& state, const Boundary& boundary) {
+SurfaceContacts contacts_of(const Garment& garment, const ClothState& state,
+                            const Boundary& boundary) {
     SurfaceContacts contacts;
-    if (!boundary.obstacles.empty()) Proximity().query(state.x, boundary, contacts);
+    if (boundary.obstacles.empty()) return contacts;
+    Proximity proximity;
+    proximity.query(state.x, boundary, contacts);
+    RidgeFinder(garment).find(proximity, boundary, state.x, contacts);
     return contacts;
 }
 
@@ -51,7 +56,7 @@ StepReference::StepReference(const Garment& garment, const PotentialSettings& se
         throw ArgumentError("StepReference of " + garment.name(),
                             "state, boundary or time step is not finite or of other sizes",
                             "pass the state and boundary of a step of this garment");
-    const SurfaceContacts contacts = contacts_of(state, boundary);
+    const SurfaceContacts contacts = contacts_of(garment, state, boundary);
     m_potential.begin_step(state, boundary, contacts, dt);
     starting_guess(garment, state, boundary, contacts, dt, settings.contact_distance, m_guess);
     Points still = state.x;

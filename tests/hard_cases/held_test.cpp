@@ -16,23 +16,7 @@ namespace {
 
 using Pair = std::pair<std::string, std::string>;  ///< case, stepper
 
-const char* const released =
-    "too few iterations for one huge step: cloth that is let go overshoots and is torn";
-
-const char* const torn_needles =
-    "lifting a needle's edge out of the obstacle stretches its neighbours";
-
 const std::map<Pair, std::string> known_failures = {
-    {{"needles", "quasi-newton-10"}, torn_needles},
-    {{"needles", "fast"}, torn_needles},
-    {{"soak-rest", "quasi-newton-10"},
-     "cloth over a table's edge trembles, 0.2 mm per frame: contact pulls it in, the surface "
-     "resolver lifts it out"},
-    {{"teleport", "quasi-newton-10"}, released},
-    {{"stretch-3", "quasi-newton-10"}, released},
-    {{"stretch-3", "fast"}, released},
-    {{"fabric-outside", "quasi-newton-10"},
-     "too few iterations for so stiff a fabric: it falls in slow motion"},
     {{"mixed-triangles", "fast"},
      "the network tears at triangles of 1 mm, iterations mend the rest"},
 };
@@ -40,7 +24,7 @@ const std::map<Pair, std::string> known_failures = {
 /// How many of a case's frames are run: networks are slow, and the large dress is for all.
 int frames_of(const HardCase& hard, const std::string& stepper) {
     if (hard.name == "dress-12000") return 2;
-    if (stepper == "quasi-newton-10") return hard.frames;
+    if (stepper == "quasi-newton") return hard.frames;
     return std::min(30, hard.frames);
 }
 
@@ -60,8 +44,7 @@ bool same_bits(const Points& a, const Points& b) {
 std::vector<Pair> all_pairs() {
     std::vector<Pair> pairs;
     for (const HardCase& hard : hard_cases())
-        for (const char* stepper : {"quasi-newton-10", "fast"})
-            pairs.emplace_back(hard.name, stepper);
+        for (const char* stepper : {"quasi-newton", "fast"}) pairs.emplace_back(hard.name, stepper);
     return pairs;
 }
 

@@ -34,14 +34,15 @@ std::string refusal(const std::string& name) {
 
 TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
     const FreeSheet scene;
-    for (const std::string name : {"bullet", "bullet-fine", "bullet-50", "quasi-newton-1",
-                                   "quasi-newton-10", "xpbd-1", "xpbd-20", "xpbd-100"})
+    for (const std::string name :
+         {"bullet", "bullet-fine", "bullet-50", "quasi-newton-1", "quasi-newton-10", "quasi-newton",
+          "xpbd-1", "xpbd-20", "xpbd-100"})
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
 }
 
 TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
     for (const std::string name : {"xpbd", "xpbd-", "xpbd-0", "xpbd-1001", "xpbd-20x", "xpbd--1",
-                                   "quasi-newton", "quasi-newton-", "bullet-fast"})
+                                   "quasi-newtons", "quasi-newton-", "bullet-fast"})
         EXPECT_NE(refusal(name).find("solver " + name), std::string::npos) << refusal(name);
     EXPECT_NE(refusal("nothing").find("xpbd-N"), std::string::npos) << refusal("nothing");
 }

@@ -144,7 +144,7 @@ TEST(Contest, UnknownNamesAreRefusedBeforeTheDearPart) {
         for (const auto& file : std::filesystem::directory_iterator(settings.work))
             EXPECT_EQ(file.path().string().find("reference"), std::string::npos);
     };
-    for (const char* solver : {"bulet", "bullet-1x2", "bullet-2x0", "bullet-2x", "quasi-newton",
+    for (const char* solver : {"bulet", "bullet-1x2", "bullet-2x0", "bullet-2x", "quasi-newton-",
                                "newton-", "xpbd-0", "fast+101", "torch-fast+0"})
         refused(solver);
     EXPECT_THROW(make_scene({"moon", "soft", 3, 100}), UsageError);

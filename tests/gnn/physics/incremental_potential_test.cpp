@@ -29,7 +29,20 @@ class PotentialTest : public ::testing::TestWithParam<Fabric> {
         contacts = plane_contacts(state.x, state.x.colwise().mean(), Vec3::UnitY(),
                                   Vec3(0.005, 0.002, 0.001));
         x = state.x + noise(state.x.rows(), 0.003, 4);
+        add_ridges();
         potential.begin_step(state, boundary, contacts, 1.0 / 30.0);
+    }
+    /// Faces pressed 3 mm into ridges, among them one at a pin.
+    void add_ridges() {
+        for (const int face : {0, 7, 20, 33}) {
+            RidgeContact ridge{face, {0.5, 0.2, 0.3}, Vec3(0.3, 0.8, 0.1 * face).normalized(), 0.0};
+            for (size_t k = 0; k < 3; ++k)
+                ridge.height +=
+                    ridge.weight[k] *
+                    x.row(garment.rest().faces(face, static_cast<int>(k))).dot(ridge.normal);
+            ridge.height += 0.003;
+            contacts.ridges.push_back(ridge);
+        }
     }
     void zero_pins(Points& g) const {
         for (int pin : garment.pins()) g.row(pin).setZero();
@@ -46,6 +59,21 @@ TEST_P(PotentialTest, TermsAddUpToTheValueAndAllAreAtWork) {
     Points g;
     EXPECT_DOUBLE_EQ(terms.total(), potential.value(x));
     EXPECT_DOUBLE_EQ(terms.total(), potential.value_gradient(x, g));
+}
+
+TEST_P(PotentialTest, RidgesFollowTheCubicLawAtTheirDistance) {
+    const double with = potential.terms(x).contact;
+    contacts.ridges.clear();
+    potential.begin_step(state, boundary, contacts, 1.0 / 30.0);
+    const PotentialSettings& settings = potential.settings();
+    const double depth = settings.ridge_distance + 0.003;
+    EXPECT_NEAR(with - potential.terms(x).contact,
+                4.0 * settings.contact_weight * depth * depth * depth, 1e-9 * with);
+}
+
+TEST_P(PotentialTest, RidgesOfFacesThatDoNotExistAreRefused) {
+    contacts.ridges[0].face = static_cast<int>(garment.face_count());
+    EXPECT_THROW(potential.begin_step(state, boundary, contacts, 1.0 / 30.0), ArgumentError);
 }
 
 TEST_P(PotentialTest, GradientEqualsFiniteDifferencesOfTheFreeVertices) {
@@ -112,6 +140,7 @@ TEST_P(PotentialTest, TranslatingEverythingChangesGravityAlone) {
     moved.x.rowwise() += shift;
     contacts.point0.rowwise() += shift;
     contacts.point1.rowwise() += shift;
+    for (RidgeContact& ridge : contacts.ridges) ridge.height += shift.dot(ridge.normal);
     potential.begin_step(moved, boundary, contacts, 1.0 / 30.0);
     const EnergyTerms after = potential.terms(x.rowwise() + shift);
     EXPECT_NEAR(after.strain, before.strain, 1e-9 * before.strain);

@@ -140,6 +140,62 @@ TEST(QuasiNewton, SolvesForTheContactBlocksByConjugateGradients) {
     EXPECT_GT(without, 0.3 * b.norm()) << "the contact blocks must matter in this test";
 }
 
+TEST(QuasiNewton, GoesOnWhereTheResidualStaysHighAndNotBeforeTheLeastIterations) {
+    const auto iterations = [](const SolverScene& scene, const QuasiNewtonSettings& settings) {
+        const Step step(scene);
+        Points x = step.guess;
+        const MinimiseReport report =
+            QuasiNewton(scene.garment, settings).minimise(step.potential, x);
+        EXPECT_TRUE(report.residual <= settings.tolerance ||
+                    report.iterations == settings.iterations);
+        EXPECT_EQ(report.converged, report.residual <= settings.tolerance);
+        return report.iterations;
+    };
+    const SolverScene calm = swinging_sheet(8);
+    SolverScene torn = swinging_sheet(8);
+    torn.state.x.col(0) *= 3.0;
+    torn.boundary.pin_targets = rows_of(torn.state.x, torn.garment.pins());
+    const QuasiNewtonSettings settings = QuasiNewtonSettings::controlled(4, 60);
+    EXPECT_EQ(iterations(calm, settings), 4);
+    EXPECT_GT(iterations(torn, settings), 10);
+    EXPECT_LE(iterations(torn, QuasiNewtonSettings::controlled(4, 6)), 6);
+    QuasiNewtonSettings wrong = settings;
+    wrong.least_iterations = 61;
+    EXPECT_THROW(QuasiNewton(calm.garment, wrong), ArgumentError);
+}
+
+TEST(ContactModel, BlocksOfRidgesAreTheirHessian) {
+    const SolverScene scene = swinging_sheet(6);
+    SurfaceContacts contacts;
+    Proximity().query(scene.state.x, scene.boundary, contacts);
+    for (const int face : {0, 11, 30})  // face 0 has a pinned corner
+        contacts.ridges.push_back({face, {0.5, 0.2, 0.3}, Vec3(1, 2, 3).normalized(), 10.0});
+    IncrementalPotential with(scene.garment), without(scene.garment);
+    with.begin_step(scene.state, scene.boundary, contacts, dt);
+    contacts.ridges.clear();
+    without.begin_step(scene.state, scene.boundary, contacts, dt);
+
+    QuasiNewtonMatrix matrix(scene.garment);
+    ContactModel model;
+    model.begin_step(with, matrix.row_of());
+    model.linearise(with, scene.state.x);
+    const Points direction = noise(matrix.free_count(), 1.0, 3);
+    Points product = Points::Zero(direction.rows(), 3), all(scene.garment.vertex_count(), 3);
+    model.add_product(direction, product);
+    matrix.scatter(direction, all);
+
+    Eigen::SparseMatrix<double> hessian, plain;
+    with.hessian(scene.state.x, hessian);
+    without.hessian(scene.state.x, plain);
+    const Eigen::SparseMatrix<double> blocks = hessian - plain;
+    Points expected_all(all.rows(), 3), expected;
+    Eigen::Map<VectorX>(expected_all.data(), all.size()) =
+        blocks * Eigen::Map<const VectorX>(all.data(), all.size());
+    matrix.gather(expected_all, expected);
+    ASSERT_GT(expected.norm(), 0.0);
+    EXPECT_LE((product - expected).norm(), 1e-9 * expected.norm());
+}
+
 TEST(QuasiNewton, OneIterationIsExactInFreeFall) {
     const Garment garment("sheet", sheet(8, 0.5), Fabric::soft_cotton());
     ClothState state = ClothState::at_rest(garment);

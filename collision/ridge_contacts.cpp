@@ -1,0 +1,99 @@
+#include "collision/ridge_contacts.h"
+
+#include <algorithm>
+
+#include "collision/direction.h"
+#include "collision/resolve.h"
+
+namespace cloth {
+namespace {
+
+// Normals that part by less than 25 degrees: over edges of 2 cm the surface rises by 1 mm between
+// the vertices, which the contact distance covers.
+constexpr double smooth = 0.9;
+// Skins that face each other are two bodies, or two limbs, and the cloth is pinched between them.
+constexpr double opposite = -0.5;
+constexpr double reach = 0.03;  // m: samples further from the surface get no contact
+
+bool in_reach(const SurfaceContacts& contacts, int vertex) {
+    return contacts.has(vertex) && contacts.distance[vertex] < 2.0 * reach;
+}
+
+}  // namespace
+
+RidgeFinder::RidgeFinder(const Garment& garment)
+    : m_faces(garment.rest().faces), m_bent(static_cast<size_t>(garment.face_count()), 0) {
+    const std::vector<char>& pinned = garment.is_pinned();
+    const auto is_pinned = [&](int face, int corner) {
+        return pinned[static_cast<size_t>(m_faces(face, corner))] != 0;
+    };
+    const int faces = static_cast<int>(m_faces.rows());
+    for (int face = 0; face < faces; ++face)
+        if (!is_pinned(face, 0) || !is_pinned(face, 1) || !is_pinned(face, 2))
+            m_samples.push_back({face, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}});
+    std::vector<std::pair<std::array<int, 2>, Sample>> edges;
+    for (int face = 0; face < faces; ++face)
+        for (int corner = 0; corner < 3; ++corner) {
+            const int next = (corner + 1) % 3;
+            if (is_pinned(face, corner) && is_pinned(face, next)) continue;
+            Sample sample{face, {0.0, 0.0, 0.0}};
+            sample.weight[static_cast<size_t>(corner)] = 0.5;
+            sample.weight[static_cast<size_t>(next)] = 0.5;
+            const auto [low, high] = std::minmax(m_faces(face, corner), m_faces(face, next));
+            edges.push_back({{low, high}, sample});
+        }
+    const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::stable_sort(edges.begin(), edges.end(), by_edge);
+    for (size_t k = 0; k < edges.size(); ++k)
+        if (k == 0 || edges[k].first != edges[k - 1].first) m_samples.push_back(edges[k].second);
+    m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
+    m_rows.reserve(m_samples.size());
+    Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
+}
+
+void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Points& x,
+                       SurfaceContacts& contacts, StepEnd chosen_at) {
+    contacts.ridges.clear();
+    const bool start = chosen_at == StepEnd::start;
+    const Points& normals = start ? contacts.normal0 : contacts.normal1;
+    const Points& points = start ? contacts.point0 : contacts.point1;
+    const auto bends = [&](int a, int b) {
+        if (!in_reach(contacts, a) || !in_reach(contacts, b)) return false;
+        const double cosine = normals.row(a).dot(normals.row(b));
+        if (!(cosine < smooth && cosine > opposite)) return false;
+        // in a valley the normals lean towards each other
+        return (normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0;
+    };
+    for (Eigen::Index face = 0; face < m_faces.rows(); ++face) {
+        const int a = m_faces(face, 0), b = m_faces(face, 1), c = m_faces(face, 2);
+        m_bent[static_cast<size_t>(face)] = bends(a, b) || bends(b, c) || bends(c, a);
+    }
+    m_rows.clear();
+    for (size_t k = 0; k < m_samples.size(); ++k) {
+        const Sample& sample = m_samples[k];
+        if (!m_bent[static_cast<size_t>(sample.face)]) continue;
+        auto at = m_x.row(static_cast<Eigen::Index>(k));
+        at.setZero();
+        for (int corner = 0; corner < 3; ++corner)
+            at += sample.weight[static_cast<size_t>(corner)] * x.row(m_faces(sample.face, corner));
+        m_rows.push_back(static_cast<int>(k));
+    }
+    if (m_rows.empty()) return;
+    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at);
+    for (const int row : m_rows)
+        if (m_near.has(row) && m_near.distance[row] < reach)
+            contacts.ridges.push_back(ridge(row, chosen_at));
+}
+
+RidgeContact RidgeFinder::ridge(int row, StepEnd chosen_at) const {
+    const Sample& sample = m_samples[static_cast<size_t>(row)];
+    RidgeContact ridge;
+    ridge.face = sample.face;
+    ridge.weight = sample.weight;
+    ridge.normal = chosen_at == StepEnd::start ? carried_direction(m_near, row, m_x)
+                                               : outward(m_near, row, m_x);
+    ridge.height = ridge.normal.dot(m_near.point1.row(row).transpose());
+    return ridge;
+}
+
+}  // namespace cloth
