@@ -154,7 +154,7 @@ TEST(QuasiNewton, GoesOnWhereTheResidualStaysHighAndNotBeforeTheLeastIterations)
     const SolverScene calm = swinging_sheet(8);
     SolverScene torn = swinging_sheet(8);
     torn.state.x.col(0) *= 3.0;
-    torn.boundary.pin_targets = rows_of(torn.state.x, torn.garment.pins());
+    torn.boundary.pin_targets = cloth::testing::rows_of(torn.state.x, torn.garment.pins());
     const QuasiNewtonSettings settings = QuasiNewtonSettings::controlled(4, 60);
     EXPECT_EQ(iterations(calm, settings), 4);
     EXPECT_GT(iterations(torn, settings), 10);
