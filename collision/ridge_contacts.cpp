@@ -80,9 +80,22 @@ void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Poi
     }
     if (m_rows.empty()) return;
     proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at);
-    for (const int row : m_rows)
-        if (m_near.has(row) && m_near.distance[row] < reach)
-            contacts.ridges.push_back(ridge(row, chosen_at));
+    for (const int row : m_rows) {
+        if (!m_near.has(row) || !(m_near.distance[row] < reach)) continue;
+        const RidgeContact found = ridge(row, chosen_at);
+        if (agrees(found, contacts)) contacts.ridges.push_back(found);
+    }
+}
+
+/// Whether a ridge faces the way that the skins under the face's vertices do; where it does not,
+/// another limb is near and the cloth is pinched.
+bool RidgeFinder::agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const {
+    for (int corner = 0; corner < 3; ++corner) {
+        const int vertex = m_faces(ridge.face, corner);
+        if (in_reach(contacts, vertex) && ridge.normal.dot(contacts.normal1.row(vertex)) < opposite)
+            return false;
+    }
+    return true;
 }
 
 RidgeContact RidgeFinder::ridge(int row, StepEnd chosen_at) const {

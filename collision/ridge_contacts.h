@@ -31,6 +31,7 @@ class RidgeFinder {
         int face;
         std::array<double, 3> weight;  ///< of the face's corners
     };
+    bool agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const;
     RidgeContact ridge(int row, StepEnd chosen_at) const;
 
     Faces m_faces;
