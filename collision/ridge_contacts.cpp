@@ -21,62 +21,53 @@ bool in_reach(const SurfaceContacts& contacts, int vertex) {
 
 }  // namespace
 
-RidgeFinder::RidgeFinder(const Garment& garment)
-    : m_faces(garment.rest().faces), m_bent(static_cast<size_t>(garment.face_count()), 0) {
-    const std::vector<char>& pinned = garment.is_pinned();
-    const auto is_pinned = [&](int face, int corner) {
-        return pinned[static_cast<size_t>(m_faces(face, corner))] != 0;
+RidgeFinder::RidgeFinder(const Garment& garment) : m_faces(garment.rest().faces) {
+    add_faces(garment.is_pinned());
+    add_edges(garment.is_pinned());
+    m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
+    m_rows.reserve(m_samples.size());
+    Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
+}
+
+void RidgeFinder::add_faces(const std::vector<char>& pinned) {
+    const auto is_free = [&](int face, int corner) {
+        return pinned[static_cast<size_t>(m_faces(face, corner))] == 0;
     };
-    const int faces = static_cast<int>(m_faces.rows());
-    for (int face = 0; face < faces; ++face)
-        if (!is_pinned(face, 0) || !is_pinned(face, 1) || !is_pinned(face, 2))
+    for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
+        if (is_free(face, 0) || is_free(face, 1) || is_free(face, 2))
             m_samples.push_back({face, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}});
+}
+
+/// Each edge once, as part of the first of its faces.
+void RidgeFinder::add_edges(const std::vector<char>& pinned) {
     std::vector<std::pair<std::array<int, 2>, Sample>> edges;
-    for (int face = 0; face < faces; ++face)
+    for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
         for (int corner = 0; corner < 3; ++corner) {
             const int next = (corner + 1) % 3;
-            if (is_pinned(face, corner) && is_pinned(face, next)) continue;
+            const auto [low, high] = std::minmax(m_faces(face, corner), m_faces(face, next));
+            if (pinned[static_cast<size_t>(low)] && pinned[static_cast<size_t>(high)]) continue;
             Sample sample{face, {0.0, 0.0, 0.0}};
             sample.weight[static_cast<size_t>(corner)] = 0.5;
             sample.weight[static_cast<size_t>(next)] = 0.5;
-            const auto [low, high] = std::minmax(m_faces(face, corner), m_faces(face, next));
             edges.push_back({{low, high}, sample});
         }
     const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
     std::stable_sort(edges.begin(), edges.end(), by_edge);
     for (size_t k = 0; k < edges.size(); ++k)
         if (k == 0 || edges[k].first != edges[k - 1].first) m_samples.push_back(edges[k].second);
-    m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
-    m_rows.reserve(m_samples.size());
-    Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
 }
 
 void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Points& x,
                        SurfaceContacts& contacts, StepEnd chosen_at) {
     contacts.ridges.clear();
-    const bool start = chosen_at == StepEnd::start;
-    const Points& normals = start ? contacts.normal0 : contacts.normal1;
-    const Points& points = start ? contacts.point0 : contacts.point1;
-    const auto bends = [&](int a, int b) {
-        if (!in_reach(contacts, a) || !in_reach(contacts, b)) return false;
-        const double cosine = normals.row(a).dot(normals.row(b));
-        if (!(cosine < smooth && cosine > opposite)) return false;
-        // in a valley the normals lean towards each other
-        return (normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0;
-    };
-    for (Eigen::Index face = 0; face < m_faces.rows(); ++face) {
-        const int a = m_faces(face, 0), b = m_faces(face, 1), c = m_faces(face, 2);
-        m_bent[static_cast<size_t>(face)] = bends(a, b) || bends(b, c) || bends(c, a);
-    }
     m_rows.clear();
     for (size_t k = 0; k < m_samples.size(); ++k) {
-        const Sample& sample = m_samples[k];
-        if (!m_bent[static_cast<size_t>(sample.face)]) continue;
-        auto at = m_x.row(static_cast<Eigen::Index>(k));
-        at.setZero();
-        for (int corner = 0; corner < 3; ++corner)
-            at += sample.weight[static_cast<size_t>(corner)] * x.row(m_faces(sample.face, corner));
-        m_rows.push_back(static_cast<int>(k));
+        if (!bends(m_samples[k], contacts, chosen_at)) continue;
+        const int row = static_cast<int>(k);
+        m_rows.push_back(row);
+        m_x.row(row).setZero();
+        for (size_t c = 0; c < 3; ++c)
+            m_x.row(row) += m_samples[k].weight[c] * x.row(vertex(m_samples[k], c));
     }
     if (m_rows.empty()) return;
     proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at);
@@ -87,12 +78,32 @@ void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Poi
     }
 }
 
+/// Whether two corners of a face, or both ends of an edge, stand on skins that part.
+bool RidgeFinder::bends(const Sample& sample, const SurfaceContacts& contacts,
+                        StepEnd chosen_at) const {
+    const bool start = chosen_at == StepEnd::start;
+    const Points& normals = start ? contacts.normal0 : contacts.normal1;
+    const Points& points = start ? contacts.point0 : contacts.point1;
+    for (size_t c = 0; c < 3; ++c) {
+        const size_t next = (c + 1) % 3;
+        const int a = vertex(sample, c), b = vertex(sample, next);
+        if (sample.weight[c] == 0.0 || sample.weight[next] == 0.0) continue;
+        if (!in_reach(contacts, a) || !in_reach(contacts, b)) continue;
+        const double cosine = normals.row(a).dot(normals.row(b));
+        if (!(cosine < smooth && cosine > opposite)) continue;
+        // in a valley the normals lean towards each other
+        if ((normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0) return true;
+    }
+    return false;
+}
+
 /// Whether a ridge faces the way that the skins under the face's vertices do; where it does not,
 /// another limb is near and the cloth is pinched.
 bool RidgeFinder::agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const {
-    for (int corner = 0; corner < 3; ++corner) {
-        const int vertex = m_faces(ridge.face, corner);
-        if (in_reach(contacts, vertex) && ridge.normal.dot(contacts.normal1.row(vertex)) < opposite)
+    for (size_t c = 0; c < 3; ++c) {
+        const int corner = m_faces(ridge.face, static_cast<int>(c));
+        if (ridge.weight[c] > 0.0 && in_reach(contacts, corner) &&
+            ridge.normal.dot(contacts.normal1.row(corner)) < opposite)
             return false;
     }
     return true;

@@ -16,7 +16,7 @@ namespace cloth {
 ///     ridges.find(proximity, boundary, state.x, contacts);  // fills contacts.ridges
 ///
 /// Of the faces and edges that bend so, centres and midpoints near an obstacle get a contact of
-/// their own. Cloth on smooth surfaces costs one comparison of normals per face.
+/// their own. Cloth on smooth surfaces costs one comparison of normals per edge of a face.
 class RidgeFinder {
  public:
     explicit RidgeFinder(const Garment& garment);
@@ -31,12 +31,17 @@ class RidgeFinder {
         int face;
         std::array<double, 3> weight;  ///< of the face's corners
     };
+    int vertex(const Sample& sample, size_t corner) const {
+        return m_faces(sample.face, static_cast<int>(corner));
+    }
+    void add_faces(const std::vector<char>& pinned);
+    void add_edges(const std::vector<char>& pinned);
+    bool bends(const Sample& sample, const SurfaceContacts& contacts, StepEnd chosen_at) const;
     bool agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const;
     RidgeContact ridge(int row, StepEnd chosen_at) const;
 
     Faces m_faces;
     std::vector<Sample> m_samples;  ///< centres of faces, then midpoints of edges
-    std::vector<char> m_bent;       ///< |F|: its vertices stand on skins that face different ways
     Points m_x;                     ///< |samples| x 3 (m)
     std::vector<int> m_rows;
     SurfaceContacts m_near;  ///< |samples|

@@ -59,18 +59,35 @@ BulletClothSettings bullet_settings(const std::string& name) {
     return settings;
 }
 
-std::unique_ptr<Stepper> make_newton(const std::string& name, const ComparisonScene& scene) {
+const std::string bdf2 = "-bdf2";
+
+/// The integrator that a name ends with, which is taken off.
+Integrator take_integrator(std::string& name) {
+    if (name.size() < bdf2.size() || name.substr(name.size() - bdf2.size()) != bdf2)
+        return Integrator::backward_euler;
+    name.resize(name.size() - bdf2.size());
+    return Integrator::bdf2;
+}
+
+std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& scene) {
     ImplicitSettings settings;
-    settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
+    settings.potential.integrator = take_integrator(name);
+    if (name != "reference") settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
     return std::make_unique<ImplicitStepper>(scene.garment(), settings);
 }
 
-std::unique_ptr<Stepper> make_quasi_newton(const std::string& name, const ComparisonScene& scene) {
-    if (name == "quasi-newton") return make_physics_cloth(scene.garment());
+std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {
+    const Integrator integrator = take_integrator(name);
+    if (name == "quasi-newton") {
+        QuasiNewtonSettings controlled = QuasiNewtonSettings::controlled();
+        controlled.potential.integrator = integrator;
+        return make_physics_cloth(scene.garment(), controlled);
+    }
     const size_t cross = name.find('x');
     const std::string first = name.substr(0, cross);
     QuasiNewtonSettings settings;
     settings.iterations = iterations_of(first, "quasi-newton-", 0, 1000);
+    settings.potential.integrator = integrator;
     auto stepper = std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
     if (cross == std::string::npos) return stepper;
     return std::make_unique<SubsteppedStepper>(scene.garment(), std::move(stepper),
@@ -87,12 +104,14 @@ std::string weights_folder(const std::string& folder) {
     return folder.empty() ? asset_path("weights") : folder;
 }
 
-std::unique_ptr<Stepper> make_network(const std::string& name, const ComparisonScene& scene,
+std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
+    const Integrator integrator = take_integrator(name);
     const bool torch = starts_with(name, "torch-");
     const std::string network = torch ? name.substr(6) : name;
     const std::string variant = network.substr(0, network.find('+'));
     LearnedStepperSettings learned;
+    learned.potential.integrator = integrator;
     if (variant != network) learned.refine = iterations_of(network, variant + "+", 0, 100);
     const Weights weights = Weights::load(weights_file(variant, settings.weights));
     if (torch && !settings.torch)
@@ -134,8 +153,8 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
                                                     scene.segments());
-    if (name == "reference") return std::make_unique<ImplicitStepper>(scene.garment());
-    if (starts_with(name, "newton")) return make_newton(name, scene);
+    if (name == "reference" || name == "reference" + bdf2 || starts_with(name, "newton"))
+        return make_newton(name, scene);
     if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
     if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
     return make_network(name, scene, settings);

@@ -39,6 +39,8 @@ struct SolverSettings {
 /// | VARIANT+K          | the network and exactly K quasi-Newton iterations             |
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
 ///
+/// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
+///
 /// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);

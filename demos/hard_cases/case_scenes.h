@@ -9,6 +9,7 @@ namespace cloth {
 // contact: contact_scenes.cpp, body_scenes.cpp
 HardSceneParts body_spin();
 HardSceneParts hands_through_shirt();
+HardSceneParts fast_ball();
 HardSceneParts teleport();
 HardSceneParts dress_12000();
 HardSceneParts armpit_pinch();

@@ -70,6 +70,30 @@ HardSceneParts hands_through_shirt() {
     return {std::move(garment), start, outside};
 }
 
+HardSceneParts fast_ball() {
+    constexpr double radius = 0.08, speed = 10.0, from = 0.5, to = -0.15;
+    Garment garment = curtain();
+    const ClothState start = ClothState::at_rest(garment);
+    const Points pins = held_pins(garment);
+    const auto centre = [=](double time) {
+        const double flown = ramp(time, 0.3, 0.3 + (from - to) / speed);
+        return Vec3(0.0, 0.0, from + (to - from) * flown);
+    };
+    const auto outside = [=](double t0, double t1) {
+        Boundary boundary;
+        boundary.pin_targets = pins;
+        boundary.obstacles.push_back(ball(radius, centre(t0), centre(t1)));
+        return boundary;
+    };
+    HardSceneParts parts{std::move(garment), start, outside};
+    parts.loss = [=](const Boundary& boundary, const Points& x) {
+        const double front = boundary.obstacles[0].pose1.translation().z() - radius;
+        const bool pushed = front < -0.02;
+        return pushed && x.col(2).minCoeff() > front + 0.02 ? "the ball went through" : "";
+    };
+    return parts;
+}
+
 HardSceneParts teleport() {
     constexpr double jump_time = 0.5, jump = 1.0;
     constexpr double radius = 0.12, half = 0.3, back = 0.16;

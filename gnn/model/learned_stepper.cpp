@@ -61,6 +61,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_ridges(garment),
       m_resolver(garment),
       m_potential(garment, settings.potential),
+      m_time(settings.potential.integrator),
       m_solver(garment, refinement(settings)),
       m_builder(garment, m_graph, m_predictor->config().features) {
 }
@@ -98,9 +99,10 @@ StepReport LearnedStepper::step(const Boundary& boundary, double dt, ClothState&
 void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothState& state,
                              StepReport& report) {
     Stopwatch watch;
-    m_potential.begin_step(state, boundary, m_contacts, dt);
-    starting_guess(*m_garment, state, boundary, m_contacts, dt,
-                   m_settings.potential.contact_distance, m_guess);
+    const double contact_distance = m_settings.potential.contact_distance;
+    const InertialStep* inertia = m_time.begin_step(state, m_contacts, contact_distance, dt);
+    m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
+    starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_guess);
     m_builder.build(state, boundary, m_potential, m_guess, m_features);
     report.times.features = watch.lap_ms();
     m_predictor->predict(m_graph, m_features, m_output);
@@ -136,7 +138,9 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
         m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     if (!m_x.allFinite()) return false;
     report.max_penetration = resolved.deepest_after();
-    state.v = (m_x - state.x) / dt;
+    m_time.velocity(state, m_x, dt, m_v);
+    m_time.end_step(state, m_x, m_v, dt);
+    state.v = m_v;
     state.x = m_x;
     state.time += dt;
     return true;

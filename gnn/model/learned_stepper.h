@@ -89,11 +89,12 @@ class LearnedStepper : public Stepper {
     RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
     IncrementalPotential m_potential;
+    TimeIntegration m_time;
     QuasiNewton m_solver;
     FeatureBuilder m_builder;
     SurfaceContacts m_contacts, m_resolved;
     Features m_features;
-    Points m_guess, m_output, m_prediction, m_x;
+    Points m_guess, m_output, m_prediction, m_x, m_v;
     bool m_fell_back = false;
 };
 

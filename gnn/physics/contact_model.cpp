@@ -56,7 +56,7 @@ void ContactModel::linearise(const IncrementalPotential& potential, const Points
     const auto& planes = potential.ridges().planes();
     for (size_t k = 0; k < m_ridges.size(); ++k) {
         m_ridges[k].depth = planes[k].depth(x);
-        m_ridges[k].stiffness = 6.0 * m_weight * std::max(m_ridges[k].depth, 0.0);
+        m_ridges[k].stiffness = RidgeEnergy::law(m_ridges[k].depth, m_weight).stiffness;
     }
     const FrictionEnergy& friction = potential.friction();
     for (size_t k = 0; k < m_sliders.size(); ++k) {
@@ -70,17 +70,24 @@ void ContactModel::linearise(const IncrementalPotential& potential, const Points
 
 bool ContactModel::anticipate(const Points& step) {
     bool any = !m_sliders.empty();
-    const auto stiffen = [&](auto& contact, double rise) {
+    for (Contact& contact : m_contacts) {
         const double before = std::max(contact.depth, 0.0);
-        const double after = contact.depth - rise;
+        const double after = contact.depth - step.row(contact.row).dot(contact.normal);
         // Slope of the secant of the force 3 w depth^2.
         if (after > before)
             contact.stiffness =
                 3.0 * m_weight * (before + std::min(after, before + anticipated_depth));
         any = any || contact.stiffness > 0.0;
-    };
-    for (Contact& contact : m_contacts) stiffen(contact, step.row(contact.row).dot(contact.normal));
-    for (Ridge& ridge : m_ridges) stiffen(ridge, rise(ridge, step));
+    }
+    for (Ridge& ridge : m_ridges) {
+        const double before = std::max(ridge.depth, 0.0);
+        const double after = std::min(ridge.depth - rise(ridge, step), before + anticipated_depth);
+        if (after > before)
+            ridge.stiffness = (RidgeEnergy::law(after, m_weight).force -
+                               RidgeEnergy::law(before, m_weight).force) /
+                              (after - before);
+        any = any || ridge.stiffness > 0.0;
+    }
     return any;
 }
 

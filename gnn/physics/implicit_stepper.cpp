@@ -29,6 +29,7 @@ ImplicitStepper::ImplicitStepper(const Garment& garment, const ImplicitSettings&
     : m_garment(&garment),
       m_settings(settings),
       m_potential(garment, settings.potential),
+      m_time(settings.potential.integrator),
       m_newton(garment, settings),
       m_proximity(settings.proximity),
       m_ridges(garment),
@@ -44,8 +45,9 @@ StepReport ImplicitStepper::step(const Boundary& boundary, double dt, ClothState
     StepReport report;
     if (!minimise(boundary, state, dt, report)) return failed();
     finish(boundary, report);
-    m_v = (m_x - state.x) / dt;
+    m_time.velocity(state, m_x, dt, m_v);
     if (!m_x.allFinite() || !m_v.allFinite()) return failed();
+    m_time.end_step(state, m_x, m_v, dt);
     state.x = m_x;
     state.v = m_v;
     state.time += dt;
@@ -63,7 +65,9 @@ bool ImplicitStepper::minimise(const Boundary& boundary, const ClothState& state
         report.times.proximity += milliseconds_since(start);
 
         const Clock::time_point solve = Clock::now();
-        m_potential.begin_step(state, boundary, m_contacts, dt);
+        const InertialStep* inertia =
+            m_time.begin_step(state, m_contacts, m_potential.settings().contact_distance, dt);
+        m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
         if (round == 0) choose_start(boundary, state, dt);
         const MinimiseReport minimum = m_newton.minimise(m_potential, m_x);
         report.times.solve += milliseconds_since(solve);

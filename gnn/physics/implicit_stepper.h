@@ -19,7 +19,7 @@ struct ImplicitSettings : NewtonSettings {
     double safety_distance = 5e-4;
 };
 
-/// The reference: one backward-Euler step minimised by Newton's method from the projected linear
+/// The reference: one implicit step minimised by Newton's method from the projected linear
 /// extrapolation, or from x_t where the extrapolation's energy is not finite. (Starting from the
 /// lower of both needs as many iterations, and where the iterations end before the minimum, cloth
 /// that starts from x_t hangs back.)
@@ -51,6 +51,7 @@ class ImplicitStepper : public Stepper {
     const Garment* m_garment;
     ImplicitSettings m_settings;
     IncrementalPotential m_potential;
+    TimeIntegration m_time;
     Newton m_newton;
     Proximity m_proximity;
     RidgeFinder m_ridges;

@@ -70,7 +70,8 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
 }
 
 void IncrementalPotential::begin_step(const ClothState& state, const Boundary& boundary,
-                                      const SurfaceContacts& contacts, double dt) {
+                                      const SurfaceContacts& contacts, double dt,
+                                      const InertialStep* inertia) {
     const Eigen::Index count = m_garment->vertex_count();
     if (!(dt > 0.0) || !std::isfinite(dt))
         throw ArgumentError("dt", std::to_string(dt) + " is no time step", "pass seconds, above 0");
@@ -82,7 +83,8 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
 
     m_dt = dt;
     m_contacts = contacts;
-    m_inertia.begin_step(state, dt);
+    m_inertial_dt = inertia ? inertia->dt : dt;
+    m_inertia.begin_step(state, dt, inertia);
     m_gravity.begin_step(boundary.gravity, boundary.accelerations);
     m_contact.begin_step(contacts, m_settings.contact_distance);
     m_ridges.begin_step(contacts, m_settings.ridge_distance);

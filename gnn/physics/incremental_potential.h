@@ -19,6 +19,7 @@ namespace cloth {
 
 /// Constants of the incremental potential that are not the fabric's.
 struct PotentialSettings {
+    Integrator integrator = Integrator::backward_euler;  ///< of steppers
     double contact_distance = 4e-3;  ///< cloth is pushed away below this distance (m), 1e-3 to 1e-2
     double contact_weight = 5e5;     ///< w in w max(0, eps - d)^3 (N/m^2), 1e3 to 1e6
     /// Faces and edges that bend over ridges of obstacles are pushed away below this distance (m),
@@ -40,7 +41,7 @@ struct EnergyTerms {
     double total() const { return strain + bending + gravity + inertia + contact + friction; }
 };
 
-/// E(x) of one backward-Euler step; its minimum is the garment's position at t + dt.
+/// E(x) of one implicit step; its minimum is the garment's position at t + dt.
 ///
 ///     IncrementalPotential potential(garment, settings);
 ///     potential.begin_step(state, boundary, contacts, dt);
@@ -60,9 +61,11 @@ class IncrementalPotential {
     /// Fixes everything that does not depend on the unknown x. `contacts` are the nearest points of
     /// state.x at t, or empty where there is no obstacle. External accelerations and gravity come
     /// from `boundary`.
+    /// @param inertia  of the time integration; null: backward Euler
     /// @throws ArgumentError if an array's size does not fit the garment or dt is not positive
     void begin_step(const ClothState& state, const Boundary& boundary,
-                    const SurfaceContacts& contacts, double dt);
+                    const SurfaceContacts& contacts, double dt,
+                    const InertialStep* inertia = nullptr);
 
     EnergyTerms terms(const Points& x) const;
     double value(const Points& x) const;
@@ -84,8 +87,9 @@ class IncrementalPotential {
     const Garment& garment() const { return *m_garment; }
     const PotentialSettings& settings() const { return m_settings; }
     double dt() const { return m_dt; }
+    double inertial_dt() const { return m_inertial_dt; }  ///< in the M / dt^2 of most vertices (s)
     const SurfaceContacts& contacts() const { return m_contacts; }
-    const Points& inertial_target() const { return m_inertia.target(); }  ///< x_t + dt v_t
+    const Points& inertial_target() const { return m_inertia.target(); }  ///< (m)
     const RidgeEnergy& ridges() const { return m_ridges; }                ///< of this step
     const FrictionEnergy& friction() const { return m_friction; }         ///< of this step
 
@@ -97,7 +101,7 @@ class IncrementalPotential {
 
     const Garment* m_garment;
     PotentialSettings m_settings;
-    double m_dt = 0.0;
+    double m_dt = 0.0, m_inertial_dt = 0.0;
     double m_force_scale = 0.0;
     SurfaceContacts m_contacts;
     std::shared_ptr<const BlockPattern> m_pattern;

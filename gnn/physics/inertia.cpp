@@ -2,13 +2,14 @@
 
 namespace cloth {
 
-void compute_inertial_target(const ClothState& state, double dt, Points& target) {
-    target = state.x + dt * state.v;
-}
-
-void InertiaEnergy::begin_step(const ClothState& state, double dt) {
-    compute_inertial_target(state, dt, m_target);
+void InertiaEnergy::begin_step(const ClothState& state, double dt, const InertialStep* step) {
     m_stiffness = m_garment->masses() / (dt * dt);
+    if (!step) {
+        m_target = state.x + dt * state.v;
+        return;
+    }
+    m_target = step->target;
+    m_stiffness.array() *= step->weight.array();
 }
 
 double InertiaEnergy::value(const Points& x) const {

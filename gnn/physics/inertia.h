@@ -3,23 +3,22 @@
 #include "data/cloth_state.h"
 #include "data/garment.h"
 #include "gnn/physics/block_pattern.h"
+#include "gnn/physics/time_integration.h"
 
 namespace cloth {
 
-/// Where each vertex would be at t + dt if no force acted: x_t + dt v_t (backward Euler). The one
-/// place that knows the time integration scheme.
-void compute_inertial_target(const ClothState& state, double dt, Points& target);
-
-/// Inertia of one backward-Euler step: E = sum m_i / (2 dt^2) |x_i - target_i|^2.
+/// Inertia of one step: E = sum w_i m_i / (2 dt^2) |x_i - target_i|^2, by backward Euler (target
+/// x_t + dt v_t, w = 1) unless a TimeIntegration says otherwise.
 class InertiaEnergy {
  public:
     /// Keeps a reference to `garment`.
     explicit InertiaEnergy(const Garment& garment) : m_garment(&garment) {}
 
-    void begin_step(const ClothState& state, double dt);
+    /// @param step  null: backward Euler
+    void begin_step(const ClothState& state, double dt, const InertialStep* step = nullptr);
 
     const Points& target() const { return m_target; }         ///< |V| x 3 (m)
-    const VectorX& stiffness() const { return m_stiffness; }  ///< |V|: m / dt^2 (N/m)
+    const VectorX& stiffness() const { return m_stiffness; }  ///< |V|: w m / dt^2 (N/m)
 
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).

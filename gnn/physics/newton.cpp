@@ -112,7 +112,8 @@ bool Newton::iterate(const IncrementalPotential& potential, Points& x, MinimiseR
 }
 
 bool Newton::factorise(const IncrementalPotential& potential, const Points& x, double residual) {
-    const double unit = potential.garment().masses().mean() / (potential.dt() * potential.dt());
+    const double dt = potential.inertial_dt();
+    const double unit = potential.garment().masses().mean() / (dt * dt);
     const bool try_exact = residual < m_settings.exact_below && m_projected_steps == 0;
     m_projected_steps = std::max(0, m_projected_steps - 1);
     if (try_exact) {

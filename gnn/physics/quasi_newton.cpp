@@ -73,7 +73,7 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
     const Garment& garment = potential.garment();
     if (!m_matrix.fits(garment) || x.rows() != garment.vertex_count() || !x.allFinite())
         return false;
-    if (!m_matrix.prepare(garment, potential.dt())) return false;
+    if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
     m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
     report.energy = potential.value_gradient(x, m_all_gradient);

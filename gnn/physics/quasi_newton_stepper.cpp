@@ -37,6 +37,7 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
                                        const ProximitySettings& proximity)
     : m_garment(&garment),
       m_potential(garment, settings.potential),
+      m_time(settings.potential.integrator),
       m_solver(garment, settings),
       m_proximity(proximity),
       m_ridges(garment),
@@ -45,8 +46,10 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
 
 std::string QuasiNewtonStepper::name() const {
     const QuasiNewtonSettings& settings = m_solver.settings();
-    if (settings.tolerance > 0.0) return "quasi-newton";
-    return "quasi-newton-" + std::to_string(settings.iterations);
+    std::string name = "quasi-newton";
+    if (settings.tolerance == 0.0) name += "-" + std::to_string(settings.iterations);
+    if (settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
+    return name;
 }
 
 StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothState& state) {
@@ -56,9 +59,10 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     find_contacts(boundary, state);
     report.times.proximity = watch.lap();
 
-    m_potential.begin_step(state, boundary, m_contacts, dt);
-    starting_guess(*m_garment, state, boundary, m_contacts, dt,
-                   m_potential.settings().contact_distance, m_x);
+    const double contact_distance = m_potential.settings().contact_distance;
+    const InertialStep* inertia = m_time.begin_step(state, m_contacts, contact_distance, dt);
+    m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
+    starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_x);
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     if (!minimum.finite) return failed();
     report.iterations = minimum.iterations;
@@ -68,8 +72,9 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
 
     resolve(boundary, report);
     report.times.contact = watch.lap();
-    m_v = (m_x - state.x) / dt;
+    m_time.velocity(state, m_x, dt, m_v);
     if (!m_x.allFinite() || !m_v.allFinite()) return failed();
+    m_time.end_step(state, m_x, m_v, dt);
     state.x = m_x;
     state.v = m_v;
     state.time += dt;

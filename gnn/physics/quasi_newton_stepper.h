@@ -23,7 +23,8 @@ class QuasiNewtonStepper : public Stepper {
     QuasiNewtonStepper(const Garment& garment, const QuasiNewtonSettings& settings,
                        const ProximitySettings& proximity = {});
 
-    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as a tolerance needs.
+    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as a tolerance
+    /// needs; with "-bdf2" at the end if that integrates.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     bool internal_forces(const Points& x, Points& forces) const override {
@@ -37,6 +38,7 @@ class QuasiNewtonStepper : public Stepper {
 
     const Garment* m_garment;
     IncrementalPotential m_potential;
+    TimeIntegration m_time;
     QuasiNewton m_solver;
     Proximity m_proximity;
     RidgeFinder m_ridges;

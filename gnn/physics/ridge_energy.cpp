@@ -1,6 +1,17 @@
 #include "gnn/physics/ridge_energy.h"
 
+#include <algorithm>
+
 namespace cloth {
+
+RidgeEnergy::Law RidgeEnergy::law(double depth, double weight) {
+    constexpr double cubic_depth = 2e-4;  // m
+    if (depth <= 0.0) return {0.0, 0.0, 0.0};
+    const double d = std::min(depth, cubic_depth), more = depth - d;
+    const double force = 3.0 * weight * d * d, stiffness = 6.0 * weight * d;
+    return {weight * d * d * d + force * more + 0.5 * stiffness * more * more,
+            force + stiffness * more, stiffness};
+}
 
 void RidgeEnergy::begin_step(const SurfaceContacts& contacts, double distance) {
     m_planes.clear();
@@ -16,22 +27,19 @@ void RidgeEnergy::begin_step(const SurfaceContacts& contacts, double distance) {
 
 double RidgeEnergy::value(const Points& x, double weight) const {
     double energy = 0.0;
-    for (const Plane& plane : m_planes) {
-        const double depth = plane.depth(x);
-        if (depth > 0.0) energy += weight * depth * depth * depth;
-    }
+    for (const Plane& plane : m_planes) energy += law(plane.depth(x), weight).energy;
     return energy;
 }
 
 double RidgeEnergy::add_gradient(const Points& x, double weight, Points& gradient) const {
     double energy = 0.0;
     for (const Plane& plane : m_planes) {
-        const double depth = plane.depth(x);
-        if (depth <= 0.0) continue;
-        const Vec3 force = 3.0 * weight * depth * depth * plane.normal;
+        const Law at = law(plane.depth(x), weight);
+        if (at.energy == 0.0) continue;
+        const Vec3 force = at.force * plane.normal;
         for (size_t k = 0; k < 3; ++k)
             gradient.row(plane.vertex[k]) -= plane.weight[k] * force.transpose();
-        energy += weight * depth * depth * depth;
+        energy += at.energy;
     }
     return energy;
 }
@@ -39,10 +47,9 @@ double RidgeEnergy::add_gradient(const Points& x, double weight, Points& gradien
 void RidgeEnergy::add_hessian(const Points& x, double weight, const BlockPattern& pattern,
                               double* values) const {
     for (const Plane& plane : m_planes) {
-        const double depth = plane.depth(x);
-        if (depth <= 0.0) continue;
-        const Eigen::Matrix3d block =
-            6.0 * weight * depth * plane.normal * plane.normal.transpose();
+        const double stiffness = law(plane.depth(x), weight).stiffness;
+        if (stiffness == 0.0) continue;
+        const Eigen::Matrix3d block = stiffness * plane.normal * plane.normal.transpose();
         const auto& slots = pattern.face(static_cast<size_t>(plane.face));
         for (size_t i = 0; i < 3; ++i)
             for (size_t j = 0; j < 3; ++j)

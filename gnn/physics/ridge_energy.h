@@ -8,9 +8,11 @@
 
 namespace cloth {
 
-/// Contact of points within faces and on edges that bend over ridges of obstacles:
-/// E = sum w max(0, eps - d_k)^3, where d_k is the distance of the point, a fixed combination of
-/// its face's corners, to the tangent plane of its contact. The same law as ContactEnergy's.
+/// Contact of points within faces and on edges that bend over ridges of obstacles. The distance d_k
+/// of such a point, a fixed combination of its face's corners, is that to the tangent plane of its
+/// contact. Down to a depth D = eps - d_k of 0.2 mm the law is ContactEnergy's, w D^3; below, where
+/// vertices would have been kept out by the guess and faces are not, it goes on with the stiffness
+/// that it has there, so that solvers meet no stiffer contact than they are made for.
 class RidgeEnergy {
  public:
     explicit RidgeEnergy(const Garment& garment) : m_garment(&garment) {}
@@ -32,6 +34,12 @@ class RidgeEnergy {
 
     /// @param distance  eps (m); 0 or less: no such contacts
     void begin_step(const SurfaceContacts& contacts, double distance);
+
+    /// Energy (J), force (N) and stiffness (N/m) at a depth (m); zero where it is negative.
+    struct Law {
+        double energy, force, stiffness;
+    };
+    static Law law(double depth, double weight);
 
     const std::vector<Plane>& planes() const { return m_planes; }
 

@@ -14,7 +14,7 @@ StepperCase quasi_newton(int iterations) {
         settings.iterations = iterations;
         return std::make_unique<QuasiNewtonStepper>(garment, settings);
     };
-    return {"QuasiNewton" + std::to_string(iterations), make, 1e-7, {}};
+    return {"QuasiNewton" + std::to_string(iterations), make, 1e-6, {}};
 }
 
 StepperCase reference() {

@@ -61,14 +61,29 @@ TEST_P(PotentialTest, TermsAddUpToTheValueAndAllAreAtWork) {
     EXPECT_DOUBLE_EQ(terms.total(), potential.value_gradient(x, g));
 }
 
-TEST_P(PotentialTest, RidgesFollowTheCubicLawAtTheirDistance) {
+TEST_P(PotentialTest, RidgesFollowTheirLawAtTheirDistance) {
     const double with = potential.terms(x).contact;
     contacts.ridges.clear();
     potential.begin_step(state, boundary, contacts, 1.0 / 30.0);
     const PotentialSettings& settings = potential.settings();
-    const double depth = settings.ridge_distance + 0.003;
-    EXPECT_NEAR(with - potential.terms(x).contact,
-                4.0 * settings.contact_weight * depth * depth * depth, 1e-9 * with);
+    const double each =
+        RidgeEnergy::law(settings.ridge_distance + 0.003, settings.contact_weight).energy;
+    EXPECT_GT(each, 0.0);
+    EXPECT_NEAR(with - potential.terms(x).contact, 4.0 * each, 1e-9 * with);
+}
+
+TEST(RidgeEnergy, LawIsCubicThenOfConstantStiffnessWithoutAJump) {
+    const double w = 5e5, h = 1e-9;
+    for (const double depth : {-1e-3, 1e-4, 1.9e-4, 2.1e-4, 3e-3}) {
+        const auto at = RidgeEnergy::law(depth, w);
+        const auto low = RidgeEnergy::law(depth - h, w), high = RidgeEnergy::law(depth + h, w);
+        EXPECT_NEAR(at.force, (high.energy - low.energy) / (2 * h), 1e-6 * at.force + 1e-9);
+        EXPECT_NEAR(at.stiffness, (high.force - low.force) / (2 * h), 1e-5 * at.stiffness + 1e-6);
+    }
+    EXPECT_DOUBLE_EQ(RidgeEnergy::law(1e-4, w).energy, w * 1e-12);
+    EXPECT_NEAR(RidgeEnergy::law(2e-4 + 1e-12, w).energy, RidgeEnergy::law(2e-4, w).energy, 1e-12);
+    EXPECT_EQ(RidgeEnergy::law(5e-3, w).stiffness, RidgeEnergy::law(2e-4, w).stiffness);
+    EXPECT_EQ(RidgeEnergy::law(-1e-3, w).energy, 0.0);
 }
 
 TEST_P(PotentialTest, RidgesOfFacesThatDoNotExistAreRefused) {
