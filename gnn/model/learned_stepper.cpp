@@ -53,6 +53,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_graph(build_cloth_graph(garment, m_predictor->config().graph_settings())),
       m_proximity(settings.proximity),
       m_resolver(garment),
+      m_layers(garment, settings.potential.self_contact),
       m_potential(garment, settings.potential),
       m_solver(garment, refinement(settings)),
       m_builder(garment, m_graph, m_predictor->config().features) {
@@ -92,6 +93,7 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
     m_potential.begin_step(state, boundary, m_contacts, dt);
     starting_guess(*m_garment, state, boundary, m_contacts, dt,
                    m_settings.potential.contact_distance, m_guess);
+    m_potential.separate_layers(m_guess);
     m_builder.build(state, boundary, m_potential, m_guess, m_features);
     report.times.features = watch.lap_ms();
     m_predictor->predict(m_graph, m_features, m_output);
@@ -127,6 +129,8 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
         m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     if (!m_x.allFinite()) return false;
     report.max_penetration = resolved.deepest_after();
+    m_layers.finish(state.x, m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved,
+                    report);
     state.v = (m_x - state.x) / dt;
     state.x = m_x;
     state.time += dt;

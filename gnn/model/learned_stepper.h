@@ -5,6 +5,7 @@
 
 #include "collision/resolve_surface.h"
 #include "gnn/model/predictor.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
@@ -16,8 +17,8 @@ namespace cloth {
 ///     settings.refine = 10;                              // a fixed number of iterations
 ///     settings.refine = Refinement::until(1.0, 30);      // until the residual is below 1, or 30
 struct Refinement {
-    int iterations = 10;     ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
-                             ///< Off blows up in long motions; 2 lose a T-shirt in a jump
+    int iterations = 10;  ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
+                          ///< Off blows up in long motions; 2 lose a T-shirt in a jump
     double tolerance = 0.0;  ///< of StepReport::residual; 0: all iterations run
 
     Refinement() = default;
@@ -81,6 +82,7 @@ class LearnedStepper : public Stepper {
     ClothGraph m_graph;
     Proximity m_proximity;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     IncrementalPotential m_potential;
     QuasiNewton m_solver;
     FeatureBuilder m_builder;

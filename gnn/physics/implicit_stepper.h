@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/resolve_surface.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/newton.h"
 #include "gnn/stepper.h"
 
@@ -53,6 +54,7 @@ class ImplicitStepper : public Stepper {
     Newton m_newton;
     Proximity m_proximity;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     SurfaceContacts m_contacts;
     VectorX m_distance;
     Points m_x, m_v;  ///< |V| x 3

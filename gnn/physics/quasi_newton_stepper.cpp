@@ -39,7 +39,8 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
       m_potential(garment, settings.potential),
       m_solver(garment, settings),
       m_proximity(proximity),
-      m_resolver(garment) {
+      m_resolver(garment),
+      m_layers(garment, settings.potential.self_contact) {
 }
 
 std::string QuasiNewtonStepper::name() const {
@@ -56,6 +57,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     m_potential.begin_step(state, boundary, m_contacts, dt);
     starting_guess(*m_garment, state, boundary, m_contacts, dt,
                    m_potential.settings().contact_distance, m_x);
+    m_potential.separate_layers(m_x);
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     if (!minimum.finite) return failed();
     report.iterations = minimum.iterations;
@@ -64,6 +66,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     report.times.solve = watch.lap();
 
     resolve(boundary, report);
+    m_layers.finish(state.x, m_proximity, boundary, safety_distance, m_x, m_contacts, report);
     report.times.contact = watch.lap();
     m_v = (m_x - state.x) / dt;
     if (!m_x.allFinite() || !m_v.allFinite()) return failed();

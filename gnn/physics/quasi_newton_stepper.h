@@ -1,6 +1,7 @@
 #pragma once
 
 #include "collision/resolve_surface.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
@@ -25,6 +26,7 @@ class QuasiNewtonStepper : public Stepper {
     /// "quasi-newton-K" with K iterations.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    const LayerSafety& layers() const { return m_layers; }  ///< of the last step
     bool internal_forces(const Points& x, Points& forces) const override {
         m_potential.internal_forces(x, forces);
         return true;
@@ -39,6 +41,7 @@ class QuasiNewtonStepper : public Stepper {
     QuasiNewton m_solver;
     Proximity m_proximity;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     SurfaceContacts m_contacts;
     Points m_x, m_v;  ///< |V| x 3: the new positions and velocities
 };
