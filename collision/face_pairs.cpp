@@ -8,8 +8,10 @@
 namespace cloth {
 namespace {
 
-constexpr size_t task_count =
-    64;  // at least, for any number of threads: the order is that of tasks
+// Pairs of nodes shared out, at least, for any number of threads: the order of what is found is
+// theirs.
+constexpr size_t task_count = 64;
+constexpr Eigen::Index few_faces = 4000;  // fewer are not worth waking threads for
 
 }  // namespace
 
@@ -135,7 +137,8 @@ void FacePairs::find(const Points& x, const Points& motion, double distance, int
     const float reach = static_cast<float>(distance) * (1.0f + 1e-6f) + 4.0f * m_rounding;
     make_tasks(reach);
     if (m_stacks.size() < m_tasks.size()) m_stacks.resize(m_tasks.size());
-    gather_in_order(static_cast<int>(m_tasks.size()), threads, m_results, m_found,
+    const int workers = m_faces.rows() < few_faces ? 1 : threads;
+    gather_in_order(static_cast<int>(m_tasks.size()), workers, m_results, m_found,
                     [&](int task, std::vector<std::array<int, 2>>& result) {
                         run_task(static_cast<size_t>(task), reach, result);
                     });

@@ -8,14 +8,15 @@ namespace cloth {
 
 /// Runs work(part, out) for part = 0 .. parts - 1 on several threads and strings the results
 /// together in the order of the parts, so that they do not depend on the number of threads.
-/// `buffers` keeps its memory from call to call.
+/// `buffers` keeps its memory from call to call. A few parts are not worth
+/// waking threads for.
 /// @param threads  0: as many as OpenMP gives
 template <typename Item, typename Work>
 void gather_in_order(int parts, int threads, std::vector<std::vector<Item>>& buffers,
                      std::vector<Item>& all, const Work& work) {
     if (buffers.size() < static_cast<size_t>(parts)) buffers.resize(static_cast<size_t>(parts));
     const int workers = threads > 0 ? threads : omp_get_max_threads();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(workers) if (workers > 1 && parts > 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(workers) if (workers > 1 && parts > 3)
     for (int part = 0; part < parts; ++part) {
         buffers[static_cast<size_t>(part)].clear();
         work(part, buffers[static_cast<size_t>(part)]);

@@ -25,26 +25,6 @@ Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, c
     return sum;
 }
 
-/// Whether spheres around the elements, drawn along their motion, stay apart: most candidates end
-/// here.
-bool clearly_apart(const ElementPair& elements, const std::array<Vec3, 4>& x, const Points& motion,
-                   double reach) {
-    const size_t first = elements.edges ? 2 : 1;
-    const Vec3 here = elements.edges ? Vec3(0.5 * (x[0] + x[1])) : x[0];
-    const Vec3 there = elements.edges ? Vec3(0.5 * (x[2] + x[3])) : x[1];
-    const double size =
-        (elements.edges ? (x[1] - here).norm() : 0.0) +
-        std::sqrt(std::max((x[2] - there).squaredNorm(), (x[3] - there).squaredNorm()));
-    double most = 0.0;
-    for (size_t a = 0; a < first; ++a)
-        for (size_t b = first; b < 4; ++b)
-            most = std::max(
-                most,
-                (motion.row(elements.vertex[a]) - motion.row(elements.vertex[b])).squaredNorm());
-    const double far = size + reach + std::sqrt(most);
-    return (here - there).squaredNorm() > far * far;
-}
-
 }  // namespace
 
 SelfProximity::SelfProximity(const Garment& garment, double thickness)
@@ -66,7 +46,6 @@ bool SelfProximity::near_at_rest(const ElementPair& elements) const {
 bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const Points& motion,
                             double reach, SelfPair& pair) const {
     const std::array<Vec3, 4> corners = corners_of(elements, x);
-    if (clearly_apart(elements, corners, motion, reach)) return false;
     const ClosestPoints points = closest_points(elements.edges, corners);
     if (!points.facing || !(points.squared > 0.0)) return false;
     const Vec3 shift = combine(elements, points.weight, motion);
@@ -79,15 +58,19 @@ bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const 
 
 void SelfProximity::find(const Points& x, const Points& motion, double reach, int threads) {
     m_faces.find(x, motion, reach, threads);
+    m_bounds.update(m_elements, x, motion);
     const auto& faces = m_faces.found();
     const int count = static_cast<int>(faces.size());
     const auto find_part = [&](int part, std::vector<SelfPair>& out) {
         const int end = std::min(count, (part + 1) * faces_per_part);
         for (int k = part * faces_per_part; k < end; ++k) {
-            const auto& [f, g] = faces[static_cast<size_t>(k)];
+            const auto [f, g] = faces[static_cast<size_t>(k)];
+            const double far = reach + m_bounds.approach(f, g);
             m_elements.visit(f, g, [&](const ElementPair& elements) {
                 SelfPair pair;
-                if (is_near(elements, x, motion, reach, pair)) out.push_back(pair);
+                if (m_bounds.may_be_near(elements, x, far) &&
+                    is_near(elements, x, motion, reach, pair))
+                    out.push_back(pair);
             });
         }
     };

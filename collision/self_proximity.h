@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/element_bounds.h"
 #include "collision/face_pairs.h"
 #include "collision/self_elements.h"
 
@@ -49,17 +50,14 @@ class SelfProximity {
 
     const std::vector<SelfPair>& pairs() const { return m_pairs; }
 
-    /// Whether a pair of elements counts, and as what; for one pair, for tests by brute force.
+ private:
     bool is_near(const ElementPair& elements, const Points& x, const Points& motion, double reach,
                  SelfPair& pair) const;
-
-    const SelfElements& elements() const { return m_elements; }
-
- private:
     bool near_at_rest(const ElementPair& elements) const;
 
     SelfElements m_elements;
     FacePairs m_faces;
+    ElementBounds m_bounds;
     Points m_rest;             ///< |V| x 3 (m)
     std::vector<int> m_piece;  ///< |V|: connected piece
     double m_thickness;

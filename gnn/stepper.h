@@ -25,6 +25,9 @@ struct StepReport {
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
     bool finite = true;            ///< false: the state was left as it was before the step
+    int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
+                      ///< with self-contact on only
+    Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)
     StageTimes times;
 };
 

@@ -9,7 +9,9 @@ std::unique_ptr<Stepper> make_learned_cloth(const Garment& garment,
                                             const LearnedClothSettings& settings) {
     auto engine = std::make_shared<Engine>(std::move(weights), settings.engine);
     auto learned = std::make_unique<LearnedStepper>(garment, std::move(engine), settings.step);
-    return std::make_unique<GuardedStepper>(garment, std::move(learned), settings.guard);
+    GuardSettings guard = settings.guard;  // its sub-steps know the layers that the step knows
+    guard.solver.potential.self_contact = settings.step.potential.self_contact;
+    return std::make_unique<GuardedStepper>(garment, std::move(learned), guard);
 }
 
 }  // namespace cloth

@@ -60,6 +60,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
       m_proximity(settings.proximity),
       m_ridges(garment),
       m_resolver(garment),
+      m_layers(garment, settings.potential.self_contact),
       m_potential(garment, settings.potential),
       m_time(settings.potential.integrator),
       m_solver(garment, refinement(settings)),
@@ -103,6 +104,7 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
     const InertialStep* inertia = m_time.begin_step(state, m_contacts, contact_distance, dt);
     m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
     starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_guess);
+    m_potential.separate_layers(m_guess);
     m_builder.build(state, boundary, m_potential, m_guess, m_features);
     report.times.features = watch.lap_ms();
     m_predictor->predict(m_graph, m_features, m_output);
@@ -138,6 +140,8 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
         m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     if (!m_x.allFinite()) return false;
     report.max_penetration = resolved.deepest_after();
+    m_layers.finish(state.x, m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved,
+                    report);
     m_time.velocity(state, m_x, dt, m_v);
     m_time.end_step(state, m_x, m_v, dt);
     state.v = m_v;

@@ -6,6 +6,7 @@
 #include "collision/resolve_surface.h"
 #include "collision/ridge_contacts.h"
 #include "gnn/model/predictor.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
@@ -88,6 +89,7 @@ class LearnedStepper : public Stepper {
     Proximity m_proximity;
     RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     IncrementalPotential m_potential;
     TimeIntegration m_time;
     QuasiNewton m_solver;

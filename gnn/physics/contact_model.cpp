@@ -45,6 +45,27 @@ void ContactModel::begin_step(const IncrementalPotential& potential,
         m_sliders.push_back({row, sliders[k].normal});
         m_slider_index.push_back(k);
     }
+    begin_layers(potential.self_contact(), row_of);
+}
+
+void ContactModel::begin_layers(const SelfContactEnergy& energy, const std::vector<int>& row_of) {
+    m_self = &energy;
+    m_layers.clear();
+    for (const SelfContactEnergy::Pair& pair : energy.pairs()) {
+        Layers layers{{}, pair.weight, pair.normal, pair.stiffness};
+        for (size_t k = 0; k < 4; ++k) {
+            layers.row[k] = row_of[static_cast<size_t>(pair.vertex[k])];
+            if (layers.row[k] < 0) layers.weight[k] = 0.0;
+        }
+        m_layers.push_back(layers);
+    }
+}
+
+double ContactModel::Layers::along(const Points& direction) const {
+    double sum = 0.0;
+    for (size_t k = 0; k < 4; ++k)
+        if (weight[k] != 0.0) sum += weight[k] * direction.row(row[k]).dot(normal.transpose());
+    return sum;
 }
 
 void ContactModel::linearise(const IncrementalPotential& potential, const Points& x) {
@@ -66,6 +87,18 @@ void ContactModel::linearise(const IncrementalPotential& potential, const Points
         m_sliders[k].stiffness =
             slider.force / std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
     }
+    if (m_layers.empty()) return;
+    m_from = x;
+    for (size_t k = 0; k < m_layers.size(); ++k) {
+        Layers& layers = m_layers[k];
+        layers.depth = m_self->thickness() - m_self->pairs()[k].distance(x);
+        layers.stiffness = 6.0 * layers.contact * std::max(layers.depth, 0.0);
+    }
+}
+
+/// Slope of the secant of the force 3 w depth^2, up to the anticipated depth.
+double ContactModel::secant(double weight, double before, double after) {
+    return 3.0 * weight * (before + std::min(after, before + anticipated_depth));
 }
 
 bool ContactModel::anticipate(const Points& step) {
@@ -73,10 +106,7 @@ bool ContactModel::anticipate(const Points& step) {
     for (Contact& contact : m_contacts) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - step.row(contact.row).dot(contact.normal);
-        // Slope of the secant of the force 3 w depth^2.
-        if (after > before)
-            contact.stiffness =
-                3.0 * m_weight * (before + std::min(after, before + anticipated_depth));
+        if (after > before) contact.stiffness = secant(m_weight, before, after);
         any = any || contact.stiffness > 0.0;
     }
     for (Ridge& ridge : m_ridges) {
@@ -87,6 +117,12 @@ bool ContactModel::anticipate(const Points& step) {
                                RidgeEnergy::law(before, m_weight).force) /
                               (after - before);
         any = any || ridge.stiffness > 0.0;
+    }
+    for (Layers& layers : m_layers) {
+        const double before = std::max(layers.depth, 0.0);
+        const double after = layers.depth - layers.along(step);
+        if (after > before) layers.stiffness = secant(layers.contact, before, after);
+        any = any || layers.stiffness > 0.0;
     }
     return any;
 }
@@ -116,6 +152,13 @@ void ContactModel::add_product(const Points& direction, Points& product) const {
         const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
         product.row(slider.row) += slider.stiffness * tangential.transpose();
     }
+    for (const Layers& layers : m_layers) {
+        if (layers.stiffness == 0.0) continue;
+        const Eigen::RowVector3d force =
+            layers.stiffness * layers.along(direction) * layers.normal.transpose();
+        for (size_t k = 0; k < 4; ++k)
+            if (layers.weight[k] != 0.0) product.row(layers.row[k]) += layers.weight[k] * force;
+    }
 }
 
 void ContactModel::limit_depth(Points& trial) const {
@@ -125,6 +168,7 @@ void ContactModel::limit_depth(Points& trial) const {
         if (depth > limit)
             trial.row(contact.vertex) += (depth - limit) * contact.normal.transpose();
     }
+    if (!m_layers.empty()) m_self->limit_entry(m_from, trial);
 }
 
 }  // namespace cloth

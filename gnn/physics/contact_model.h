@@ -18,6 +18,11 @@ namespace cloth {
 /// stiffness alone lets the next step fall through the surface. Two remedies: vertices that a plain
 /// step would press deeper get the stiffness of the depth they are heading for (up to a limit), and
 /// a trial point is never deeper than a limit beyond the point it comes from.
+///
+/// Contact of the garment with itself adds, with the same remedies, a term of rank one for each
+/// pair of elements that is near:
+///
+///     6 w depth c c'         c = (weight n) of the pair's four vertices
 class ContactModel {
  public:
     /// Takes the contacts and sliders of this step. @param row_of  |V|: free row, -1 for a pin
@@ -36,8 +41,10 @@ class ContactModel {
     /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
     void limit_depth(Points& trial) const;
 
-    /// Whether any obstacle is near enough to matter.
-    bool active() const { return !m_contacts.empty() || !m_sliders.empty() || !m_ridges.empty(); }
+    /// Whether any obstacle, or any other layer of the cloth, is near enough to matter.
+    bool active() const {
+        return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() || !m_layers.empty();
+    }
 
  private:
     struct Contact {
@@ -62,6 +69,19 @@ class ContactModel {
         double stiffness = 0.0;  ///< (N/m)
     };
 
+    struct Layers {
+        std::array<int, 4> row;        ///< -1: a pin
+        std::array<double, 4> weight;  ///< 0 for a pin
+        Vec3 normal;
+        double contact;          ///< w of this pair (N/m^2)
+        double depth = 0.0;      ///< (m)
+        double stiffness = 0.0;  ///< (N/m)
+
+        double along(const Points& direction) const;  ///< of a free array (n x 3)
+    };
+
+    void begin_layers(const SelfContactEnergy& energy, const std::vector<int>& row_of);
+    static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
 
     double m_weight = 0.0;  ///< w (N/m^2)
@@ -69,6 +89,9 @@ class ContactModel {
     std::vector<Ridge> m_ridges;
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;  ///< of the potential's friction().sliders()
+    std::vector<Layers> m_layers;        ///< the potential's self_contact().pairs()
+    const SelfContactEnergy* m_self = nullptr;
+    Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there are layers
 };
 
 }  // namespace cloth

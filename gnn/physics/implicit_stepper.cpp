@@ -33,7 +33,8 @@ ImplicitStepper::ImplicitStepper(const Garment& garment, const ImplicitSettings&
       m_newton(garment, settings),
       m_proximity(settings.proximity),
       m_ridges(garment),
-      m_resolver(garment) {
+      m_resolver(garment),
+      m_layers(garment, settings.potential.self_contact) {
     if (settings.contact_updates < 0 || settings.contact_updates > 10)
         throw ArgumentError("ImplicitSettings.contact_updates",
                             std::to_string(settings.contact_updates) + " is out of range",
@@ -45,6 +46,8 @@ StepReport ImplicitStepper::step(const Boundary& boundary, double dt, ClothState
     StepReport report;
     if (!minimise(boundary, state, dt, report)) return failed();
     finish(boundary, report);
+    m_layers.finish(state.x, m_proximity, boundary, std::max(0.0, m_settings.safety_distance), m_x,
+                    m_contacts, report);
     m_time.velocity(state, m_x, dt, m_v);
     if (!m_x.allFinite() || !m_v.allFinite()) return failed();
     m_time.end_step(state, m_x, m_v, dt);
@@ -93,6 +96,7 @@ void ImplicitStepper::find_contacts(const Boundary& boundary, const Points& x, S
 void ImplicitStepper::choose_start(const Boundary& boundary, const ClothState& state, double dt) {
     starting_guess(*m_garment, state, boundary, m_contacts, dt,
                    m_potential.settings().contact_distance, m_x);
+    m_potential.separate_layers(m_x);
     if (std::isfinite(m_potential.value(m_x))) return;
     m_x = state.x;
     place_pins(*m_garment, boundary, m_x);

@@ -2,6 +2,7 @@
 
 #include "collision/resolve_surface.h"
 #include "collision/ridge_contacts.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/newton.h"
 #include "gnn/stepper.h"
 
@@ -56,6 +57,7 @@ class ImplicitStepper : public Stepper {
     Proximity m_proximity;
     RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     SurfaceContacts m_contacts;
     VectorX m_distance;
     Points m_x, m_v;  ///< |V| x 3

@@ -10,6 +10,8 @@ namespace cloth {
 
 namespace {
 
+constexpr int separating_sweeps = 10;  // of a guess; what is left is the solver's
+
 void require_rows(const char* name, Eigen::Index rows, Eigen::Index expected) {
     if (rows != expected)
         throw ArgumentError(name,
@@ -59,7 +61,8 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
       m_bending(garment),
       m_gravity(garment),
       m_inertia(garment),
-      m_ridges(garment) {
+      m_ridges(garment),
+      m_self_contact(garment, settings.self_contact) {
     require_setting("contact_distance", settings.contact_distance, true);
     require_setting("contact_weight", settings.contact_weight, true);
     require_setting("ridge_distance", settings.ridge_distance, true);
@@ -92,7 +95,27 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
         *m_garment, state, boundary, contacts,
         {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip,
          m_settings.contact_distance, m_settings.contact_weight, m_settings.friction_limit});
+    m_self_contact.begin_step(state, dt);
     m_force_scale = norm_of_forces_at(state);
+}
+
+void IncrementalPotential::separate_layers(Points& guess) const {
+    if (m_self_contact.pairs().empty()) return;
+    for (int sweep = 0; sweep < separating_sweeps; ++sweep) {
+        m_self_contact.separate(guess);
+        lift_off_obstacles(guess);
+    }
+}
+
+void IncrementalPotential::lift_off_obstacles(Points& x) const {
+    for (size_t k = 0; k < m_contacts.obstacle.size(); ++k) {
+        const Eigen::Index i = static_cast<Eigen::Index>(k);
+        if (!m_contacts.has(i) || m_garment->is_pinned()[k]) continue;
+        const Eigen::RowVector3d normal = m_contacts.normal1.row(i);
+        const double depth =
+            m_settings.contact_distance - normal.dot(x.row(i) - m_contacts.point1.row(i));
+        if (depth > 0.0) x.row(i) += depth * normal;
+    }
 }
 
 /// At least 1 % of the garment's weight on Earth: the residual stays defined for cloth at rest
@@ -120,6 +143,7 @@ EnergyTerms IncrementalPotential::terms(const Points& x) const {
     terms.contact = m_contact.value(x, m_settings.contact_weight) +
                     m_ridges.value(x, m_settings.contact_weight);
     terms.friction = m_friction.value(x);
+    terms.self_contact = m_self_contact.value(x);
     return terms;
 }
 
@@ -137,6 +161,7 @@ double IncrementalPotential::value_gradient(const Points& x, Points& gradient) c
     terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient) +
                     m_ridges.add_gradient(x, m_settings.contact_weight, gradient);
     terms.friction = m_friction.add_gradient(x, gradient);
+    terms.self_contact = m_self_contact.add_gradient(x, gradient);
     mask_pins(gradient);
     return terms.total();
 }
@@ -165,6 +190,7 @@ void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>&
     m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
     m_ridges.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
     m_friction.add_hessian(x, *m_pattern, values);
+    m_self_contact.add_hessian(x, hessian);
 }
 
 void IncrementalPotential::mask_pins(Points& gradient) const {

@@ -13,6 +13,7 @@
 #include "gnn/physics/gravity.h"
 #include "gnn/physics/inertia.h"
 #include "gnn/physics/ridge_energy.h"
+#include "gnn/physics/self_contact.h"
 #include "gnn/physics/strain.h"
 
 namespace cloth {
@@ -31,14 +32,17 @@ struct PotentialSettings {
     /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
     /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
     double friction_limit = 10.0;
+    SelfContactSettings self_contact;  ///< off by default
 };
 
 /// The parts of the incremental potential (J).
 struct EnergyTerms {
     double strain = 0, bending = 0, gravity = 0, inertia = 0;
     double contact = 0;  ///< of vertices and of ridges
-    double friction = 0;
-    double total() const { return strain + bending + gravity + inertia + contact + friction; }
+    double friction = 0, self_contact = 0;
+    double total() const {
+        return strain + bending + gravity + inertia + contact + friction + self_contact;
+    }
 };
 
 /// E(x) of one implicit step; its minimum is the garment's position at t + dt.
@@ -71,8 +75,8 @@ class IncrementalPotential {
     double value(const Points& x) const;
     double value_gradient(const Points& x, Points& gradient) const;
     /// Hessian of E (3|V| x 3|V|, both triangles), by default with each element's block made
-    /// positive semi-definite. The sparsity is the same for every x: a matrix passed again is only
-    /// refilled.
+    /// positive semi-definite. The sparsity is the same for every x of a step, and without
+    /// self-contact for every step: a matrix passed again is only refilled.
     void hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
                  HessianKind kind = HessianKind::projected) const;
     /// Gradient of strain + bending only (|V| x 3, N): the force features' ingredient.
@@ -89,14 +93,21 @@ class IncrementalPotential {
     double dt() const { return m_dt; }
     double inertial_dt() const { return m_inertial_dt; }  ///< in the M / dt^2 of most vertices (s)
     const SurfaceContacts& contacts() const { return m_contacts; }
-    const Points& inertial_target() const { return m_inertia.target(); }  ///< (m)
-    const RidgeEnergy& ridges() const { return m_ridges; }                ///< of this step
-    const FrictionEnergy& friction() const { return m_friction; }         ///< of this step
+    const Points& inertial_target() const { return m_inertia.target(); }      ///< (m)
+    const RidgeEnergy& ridges() const { return m_ridges; }                    ///< of this step
+    const FrictionEnergy& friction() const { return m_friction; }             ///< of this step
+    const SelfContactEnergy& self_contact() const { return m_self_contact; }  ///< of this step
+
+    /// Moves a starting guess (|V| x 3, pins in place) whose layers are too near or have passed
+    /// through each other apart again, and off the obstacles. Without pairs of layers it does
+    /// nothing.
+    void separate_layers(Points& guess) const;
 
     void set_contact_weight(double weight) { m_settings.contact_weight = weight; }
 
  private:
     void mask_pins(Points& gradient) const;
+    void lift_off_obstacles(Points& x) const;
     double norm_of_forces_at(const ClothState& state) const;
 
     const Garment* m_garment;
@@ -112,6 +123,7 @@ class IncrementalPotential {
     ContactEnergy m_contact;
     RidgeEnergy m_ridges;
     FrictionEnergy m_friction;
+    SelfContactEnergy m_self_contact;
 };
 
 }  // namespace cloth

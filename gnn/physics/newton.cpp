@@ -37,6 +37,7 @@ void limit_entry(const IncrementalPotential& potential, const Points& x, Points&
         const double allowed = std::max(2.0 * depth, entry_depth);
         if (trial_depth > allowed) trial.row(i) += (trial_depth - allowed) * normal;
     }
+    potential.self_contact().limit_entry(x, trial);
 }
 
 /// The next step length after a trial at `step` with energy `trial`: the minimum of the parabola
@@ -85,6 +86,7 @@ MinimiseReport Newton::minimise(const IncrementalPotential& potential, Points& x
     report.finite = std::isfinite(report.energy) && std::isfinite(report.residual);
     m_shift = 0.0;
     m_projected_steps = 0;
+    if (potential.self_contact().on()) m_analysed = false;
     while (report.finite && report.iterations < m_settings.max_iterations &&
            report.residual > m_settings.tolerance)
         if (!iterate(potential, x, report)) break;
@@ -111,6 +113,13 @@ bool Newton::iterate(const IncrementalPotential& potential, Points& x, MinimiseR
     return true;
 }
 
+/// Self-contact gives the Hessian another sparsity in each step.
+void Newton::analyse() {
+    if (m_analysed && m_cholesky.is_analysed_for(m_hessian)) return;
+    m_cholesky.analyse(m_hessian);
+    m_analysed = true;
+}
+
 bool Newton::factorise(const IncrementalPotential& potential, const Points& x, double residual) {
     const double dt = potential.inertial_dt();
     const double unit = potential.garment().masses().mean() / (dt * dt);
@@ -118,12 +127,12 @@ bool Newton::factorise(const IncrementalPotential& potential, const Points& x, d
     m_projected_steps = std::max(0, m_projected_steps - 1);
     if (try_exact) {
         potential.hessian(x, m_hessian, HessianKind::exact);
-        if (!m_cholesky.is_analysed_for(m_hessian)) m_cholesky.analyse(m_hessian);
+        analyse();
         if (m_cholesky.factorise(m_hessian, m_shift * unit)) return true;
         m_projected_steps = retry_exact_after;
     }
     potential.hessian(x, m_hessian, HessianKind::projected);
-    if (!m_cholesky.is_analysed_for(m_hessian)) m_cholesky.analyse(m_hessian);
+    analyse();
     double shift = m_shift;  // rounding alone can make the projected Hessian fail
     for (int k = 0; k < max_factorisations; ++k) {
         if (m_cholesky.factorise(m_hessian, shift * unit)) return true;

@@ -45,6 +45,7 @@ class Newton {
 
  private:
     bool iterate(const IncrementalPotential& potential, Points& x, MinimiseReport& report);
+    void analyse();
     bool factorise(const IncrementalPotential& potential, const Points& x, double residual);
     bool find_direction(const IncrementalPotential& potential, const Points& x, double residual);
     double line_search(const IncrementalPotential& potential, const Points& x,
@@ -59,6 +60,7 @@ class Newton {
     NewtonSettings m_settings;
     Eigen::Index m_vertex_count;
     BlockCholesky m_cholesky;
+    bool m_analysed = false;  ///< for this step's sparsity
     Eigen::SparseMatrix<double> m_hessian;
     double m_shift = 0.0;       ///< added to the diagonal, in units of the mean m / dt^2
     int m_projected_steps = 0;  ///< before the exact Hessian is tried again

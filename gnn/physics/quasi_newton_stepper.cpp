@@ -41,7 +41,8 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
       m_solver(garment, settings),
       m_proximity(proximity),
       m_ridges(garment),
-      m_resolver(garment) {
+      m_resolver(garment),
+      m_layers(garment, settings.potential.self_contact) {
 }
 
 std::string QuasiNewtonStepper::name() const {
@@ -63,6 +64,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     const InertialStep* inertia = m_time.begin_step(state, m_contacts, contact_distance, dt);
     m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
     starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_x);
+    m_potential.separate_layers(m_x);
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     if (!minimum.finite) return failed();
     report.iterations = minimum.iterations;
@@ -71,6 +73,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     report.times.solve = watch.lap();
 
     resolve(boundary, report);
+    m_layers.finish(state.x, m_proximity, boundary, safety_distance, m_x, m_contacts, report);
     report.times.contact = watch.lap();
     m_time.velocity(state, m_x, dt, m_v);
     if (!m_x.allFinite() || !m_v.allFinite()) return failed();

@@ -2,6 +2,7 @@
 
 #include "collision/resolve_surface.h"
 #include "collision/ridge_contacts.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/stepper.h"
 
@@ -27,6 +28,7 @@ class QuasiNewtonStepper : public Stepper {
     /// needs; with "-bdf2" at the end if that integrates.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    const LayerSafety& layers() const { return m_layers; }  ///< of the last step
     bool internal_forces(const Points& x, Points& forces) const override {
         m_potential.internal_forces(x, forces);
         return true;
@@ -43,6 +45,7 @@ class QuasiNewtonStepper : public Stepper {
     Proximity m_proximity;
     RidgeFinder m_ridges;
     SurfaceResolver m_resolver;
+    LayerSafety m_layers;
     SurfaceContacts m_contacts;
     Points m_x, m_v;  ///< |V| x 3: the new positions and velocities
 };

@@ -59,6 +59,7 @@ StepReference::StepReference(const Garment& garment, const PotentialSettings& se
     const SurfaceContacts contacts = contacts_of(garment, state, boundary);
     m_potential.begin_step(state, boundary, contacts, dt);
     starting_guess(garment, state, boundary, contacts, dt, settings.contact_distance, m_guess);
+    m_potential.separate_layers(m_guess);
     Points still = state.x;
     place_pins(garment, boundary, still);
     m_guess_energy = m_potential.value(m_guess);

@@ -49,6 +49,8 @@ void add(const StepReport& part, StepReport& report) {
     report.residual = part.residual;
     report.converged = part.converged && report.converged;
     report.max_penetration = part.max_penetration;
+    report.tangles = part.tangles;
+    report.first_tangle = part.first_tangle;
     report.times.proximity += part.times.proximity;
     report.times.features += part.times.features;
     report.times.solve += part.times.solve;
