@@ -142,7 +142,7 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
     report.max_penetration = resolved.deepest_after();
     m_layers.finish(state.x, m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved,
                     report);
-    m_time.velocity(state, m_x, dt, m_v);
+    m_v = (m_x - state.x) / dt;
     m_time.end_step(state, m_x, m_v, dt);
     state.v = m_v;
     state.x = m_x;

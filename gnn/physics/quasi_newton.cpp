@@ -100,7 +100,6 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
         if (!line_search(potential, x, report)) return false;
     }
     ++report.iterations;
-    report.last_step = m_direction.norm() / std::sqrt(static_cast<double>(m_direction.rows()));
     m_history.push(m_direction, m_gradient, m_next_gradient);
     m_gradient.swap(m_next_gradient);
     update_residual(potential, report);

@@ -34,7 +34,6 @@ struct MinimiseReport {
     int evaluations = 0;     ///< energies (with gradients) computed
     double energy = 0.0;     ///< E(x) at the end (J)
     double residual = 0.0;   ///< |gradient| / force_scale() at the end, over the free vertices
-    double last_step = 0.0;  ///< root mean square over the vertices of the last step taken (m)
     bool converged = false;  ///< the tolerance was met
     bool finite = true;      ///< false: the energy at the start was not finite, x is as it was
 };

@@ -26,7 +26,7 @@ const InertialStep* TimeIntegration::begin_step(const ClothState& state,
     if (!m_active) return nullptr;
     m_step.dt = dt / 1.5;
     m_step.target =
-        (4.0 * state.x - m_x_before) / 3.0 + (dt / 9.0) * (8.0 * state.v - 2.0 * m_v_before);
+        (4.0 * state.x - m_x_before) / 3.0 + (dt / 9.0) * (8.0 * m_u - 2.0 * m_u_before);
     m_step.weight.setConstant(state.x.rows(), bdf2_weight);
     for (size_t k = 0; k < contacts.obstacle.size(); ++k) {
         const Eigen::Index i = static_cast<Eigen::Index>(k);
@@ -37,20 +37,15 @@ const InertialStep* TimeIntegration::begin_step(const ClothState& state,
     return &m_step;
 }
 
-void TimeIntegration::velocity(const ClothState& before, const Points& x, double dt,
-                               Points& v) const {
-    v = (x - before.x) / dt;
-    if (!m_active) return;
-    for (Eigen::Index i = 0; i < x.rows(); ++i)
-        if (m_step.weight[i] == bdf2_weight)
-            v.row(i) = (3.0 * x.row(i) - 4.0 * before.x.row(i) + m_x_before.row(i)) / (2.0 * dt);
-}
-
 void TimeIntegration::end_step(const ClothState& before, const Points& x, const Points& v,
                                double dt) {
     if (m_kind == Integrator::backward_euler) return;
+    m_u_before = m_active ? m_u : before.v;
+    m_u = v;
+    for (Eigen::Index i = 0; m_active && i < x.rows(); ++i)
+        if (m_step.weight[i] == bdf2_weight)
+            m_u.row(i) = (3.0 * x.row(i) - 4.0 * before.x.row(i) + m_x_before.row(i)) / (2.0 * dt);
     m_x_before = before.x;
-    m_v_before = before.v;
     m_x = x;
     m_v = v;
     m_dt = dt;

@@ -22,8 +22,10 @@ struct InertialStep {
 /// BDF2 (Hairer and Wanner, Solving Ordinary Differential Equations II, chapter III.1), from the
 /// states at t and t - dt:
 ///
-///     target = (4 x_t - x_{t-1}) / 3 + dt (8 v_t - 2 v_{t-1}) / 9,   weight 9/4
-///     v_{t+1} = (3 x_{t+1} - 4 x_t + x_{t-1}) / (2 dt)
+///     target = (4 x_t - x_{t-1}) / 3 + dt (8 u_t - 2 u_{t-1}) / 9,   weight 9/4
+///     u_{t+1} = (3 x_{t+1} - 4 x_t + x_{t-1}) / (2 dt)
+///
+/// u are velocities of second order, which stay in here; ClothState's are the motion over dt.
 ///
 /// Vertices in contact take backward Euler: a history from before an impact would throw them back.
 /// So do all vertices in the first step, after a change of the time step, and in a step whose state
@@ -37,10 +39,7 @@ class TimeIntegration {
     const InertialStep* begin_step(const ClothState& state, const SurfaceContacts& contacts,
                                    double contact_distance, double dt);
 
-    /// v at t + dt (|V| x 3, m/s) for the positions `x` that the step has found.
-    void velocity(const ClothState& before, const Points& x, double dt, Points& v) const;
-
-    /// Remembers an accepted step.
+    /// Remembers an accepted step to `x` and `v`.
     void end_step(const ClothState& before, const Points& x, const Points& v, double dt);
 
  private:
@@ -50,8 +49,8 @@ class TimeIntegration {
     bool m_active = false;  ///< BDF2 is at work in this step
     double m_dt = 0.0;      ///< of the last step (s)
     Points m_x, m_v;        ///< that the last step returned
-    Points m_x_before;      ///< one step earlier
-    Points m_v_before;
+    Points m_x_before;      ///< positions one step earlier
+    Points m_u, m_u_before;
     InertialStep m_step;
 };
 

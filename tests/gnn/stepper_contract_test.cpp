@@ -17,6 +17,18 @@ StepperCase quasi_newton(int iterations) {
     return {"QuasiNewton" + std::to_string(iterations), make, 1e-6, {}};
 }
 
+StepperCase bdf2() {
+    const auto make = [](const Garment& garment) {
+        QuasiNewtonSettings settings;
+        settings.potential.integrator = Integrator::bdf2;
+        return std::make_unique<QuasiNewtonStepper>(garment, settings);
+    };
+    return {"Bdf2",
+            make,
+            1e-6,
+            {{Promise::free_fall, "it falls by BDF2's closed form (tested on its own)"}}};
+}
+
 StepperCase reference() {
     const auto make = [](const Garment& garment) {
         return std::make_unique<ImplicitStepper>(garment);
@@ -51,8 +63,8 @@ StepperCase substepped(int substeps) {
 
 INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
                          ::testing::Values(reference(), quasi_newton(1), quasi_newton(5),
-                                           quasi_newton(20), substepped(4), xpbd(1), xpbd(20),
-                                           xpbd(100)),
+                                           quasi_newton(20), bdf2(), substepped(4), xpbd(1),
+                                           xpbd(20), xpbd(100)),
                          case_name);
 
 }  // namespace
