@@ -11,6 +11,14 @@ std::optional<std::string> after(const std::string& name, const std::string& pre
     return name.substr(prefix.size());
 }
 
+/// Takes "-bdf2" off the end; false: it is not there.
+bool take_bdf2(std::string& name) {
+    const std::string end = "-bdf2";
+    if (name.size() <= end.size() || name.substr(name.size() - end.size()) != end) return false;
+    name.resize(name.size() - end.size());
+    return true;
+}
+
 /// "K" or "KxS"; Bullet as shipped has two sub-steps per frame.
 SolverFamily bullet_family(const std::string& setting) {
     const size_t cross = setting.find('x');
@@ -30,12 +38,19 @@ SolverFamily network_family(const std::string& name) {
 
 }  // namespace
 
-SolverFamily solver_family(const std::string& solver) {
+SolverFamily solver_family(std::string solver) {
+    if (take_bdf2(solver)) {
+        SolverFamily family = solver_family(solver);
+        family.name += ", BDF2";
+        return family;
+    }
     if (solver == "bullet") return bullet_family("10x2");
     if (solver == "bullet-fine") return bullet_family("5x8");
     if (const auto setting = after(solver, "bullet-")) return bullet_family(*setting);
     if (const auto setting = after(solver, "xpbd-"))
         return {Kind::xpbd, "XPBD", *setting, "sub-steps"};
+    if (solver == "quasi-newton")
+        return {Kind::quasi_newton, "quasi-Newton", "shipped", "iterations"};
     if (const auto setting = after(solver, "quasi-newton-"))
         return {Kind::quasi_newton, "quasi-Newton", *setting, "iterations"};
     if (const auto setting = after(solver, "newton-"))
@@ -44,8 +59,8 @@ SolverFamily solver_family(const std::string& solver) {
     return network_family(solver);
 }
 
-std::optional<NetworkFacts> network_facts(const std::string& solver,
-                                          const SolverSettings& settings) {
+std::optional<NetworkFacts> network_facts(std::string solver, const SolverSettings& settings) {
+    take_bdf2(solver);
     const SolverFamily family = solver_family(solver);
     if (family.kind != Kind::network) return std::nullopt;
     const std::optional<std::string> torch = after(solver, "torch-");

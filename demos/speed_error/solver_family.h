@@ -17,7 +17,7 @@ struct SolverFamily {
 };
 
 /// What a name that make_solver() knows says.
-SolverFamily solver_family(const std::string& solver);
+SolverFamily solver_family(std::string solver);
 
 /// What a network is run by and is.
 struct NetworkFacts {
@@ -27,7 +27,6 @@ struct NetworkFacts {
 };
 
 /// Nothing for solvers without a network. @throws UsageError, LoadError as make_solver() does
-std::optional<NetworkFacts> network_facts(const std::string& solver,
-                                          const SolverSettings& settings);
+std::optional<NetworkFacts> network_facts(std::string solver, const SolverSettings& settings);
 
 }  // namespace cloth

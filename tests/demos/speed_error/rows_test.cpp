@@ -81,6 +81,11 @@ TEST(SolverFamily, NamesSayFamilyAndSetting) {
     EXPECT_EQ(solver_family("bullet-5x1").setting, "5");
     EXPECT_EQ(solver_family("reference").name, solver_family("newton-3").name);
     EXPECT_EQ(solver_family("quasi-newton-30").setting, "30");
+    EXPECT_EQ(solver_family("quasi-newton").setting, "shipped");
+    EXPECT_EQ(solver_family("quasi-newton").name, solver_family("quasi-newton-30").name);
+    EXPECT_EQ(solver_family("quasi-newton-30-bdf2").name, "quasi-Newton, BDF2");
+    EXPECT_EQ(solver_family("quasi-newton-30-bdf2").setting, "30");
+    EXPECT_EQ(solver_family("fast-bdf2").name, "fast, BDF2");
     EXPECT_EQ(solver_family("fast").setting, "shipped");
     EXPECT_EQ(solver_family("torch-fast_16+3").name, "fast_16, LibTorch");
     EXPECT_EQ(solver_family("torch-fast_16+3").setting, "+3");
