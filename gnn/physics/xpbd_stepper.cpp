@@ -68,7 +68,9 @@ XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
       m_bending(bending_springs(garment, settings.bending_angle), inverse_masses(garment),
                 settings.relaxation),
       m_proximity(proximity),
-      m_resolver(garment) {
+      m_resolver(garment),
+      m_layers(garment, settings.self_contact),
+      m_layer_safety(garment, settings.self_contact) {
 }
 
 std::string XpbdStepper::name() const {
@@ -90,6 +92,7 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
 
     const Clock::time_point contact = Clock::now();
     resolve(boundary, dt, report);
+    if (m_settings.self_contact.on()) finish_layers(boundary, dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
     return report.finite ? report : failed();
@@ -120,6 +123,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_prepared_dt = dt;
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
+    m_layers.begin_step(state, dt);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;
     if (same_bits(state.x, m_last_x))
@@ -156,6 +160,7 @@ void XpbdStepper::run(const Boundary& boundary, double dt, const Points& x0) {
         for (int k = 0; k < m_settings.iterations; ++k) {
             m_stretch.relax(m_p, k == 0);
             m_bending.relax(m_p, k == 0);
+            m_layers.project(m_p);
             m_planes.project(m_before, m_p);
         }
         m_w = (m_settings.substeps / dt) * (m_p - m_before);
@@ -178,6 +183,15 @@ void XpbdStepper::move_pins(const Boundary& boundary, const Points& x0, double p
         const auto target = boundary.pin_targets.row(static_cast<Eigen::Index>(k));
         m_p.row(pin).head<3>() = x0.row(pin) + progress * (target - x0.row(pin));
     }
+}
+
+/// Vertices that the layers' safety moved go on with their mean velocity.
+void XpbdStepper::finish_layers(const Boundary& boundary, double dt, const ClothState& state,
+                                StepReport& report) {
+    m_v = m_x;
+    m_layer_safety.finish(state.x, m_proximity, boundary, safety_distance, m_x, m_contacts, report);
+    for (Eigen::Index i = 0; i < m_x.rows(); ++i)
+        if (m_x.row(i) != m_v.row(i)) m_w.row(i).head<3>() = (m_x.row(i) - state.x.row(i)) / dt;
 }
 
 /// The last safety; vertices that it moved keep no velocity into the surface.

@@ -2,6 +2,8 @@
 
 #include "collision/resolve_surface.h"
 #include "gnn/physics/distance_constraints.h"
+#include "gnn/physics/layer_planes.h"
+#include "gnn/physics/layer_safety.h"
 #include "gnn/physics/riding_planes.h"
 #include "gnn/stepper.h"
 
@@ -18,6 +20,7 @@ struct XpbdSettings {
     double damping = 0.0;  ///< of velocities (1/s), 0 to 10; 0: only what substeps damp themselves
     double bending_angle = 1.0;  ///< fold (rad) at which springs bend like the fabric, 0.01 to 1.5
     double contact_distance = 4e-3;  ///< vertices are held off obstacles by this (m), 5e-4 to 1e-2
+    SelfContactSettings self_contact;  ///< off by default; its weight has no meaning here
 };
 
 /// What games use: springs on edges and across hinges, relaxed once in each of many substeps of a
@@ -58,6 +61,8 @@ class XpbdStepper : public Stepper {
     void move_freely(const Boundary& boundary, double h);
     void move_pins(const Boundary& boundary, const Points& x0, double progress);
     void resolve(const Boundary& boundary, double dt, StepReport& report);
+    void finish_layers(const Boundary& boundary, double dt, const ClothState& state,
+                       StepReport& report);
     bool finish(double dt, ClothState& state);
 
     const Garment* m_garment;
@@ -68,6 +73,8 @@ class XpbdStepper : public Stepper {
     SurfaceResolver m_resolver;
     SurfaceContacts m_contacts;
     RidingPlanes m_planes;
+    LayerPlanes m_layers;
+    LayerSafety m_layer_safety;
     PaddedPoints m_p, m_w, m_before;  ///< of the substep: positions, velocities, start
     Points m_x, m_v;                  ///< |V| x 3: at the end of the step; the mean velocity (m/s)
     Points m_last_x, m_lag;  ///< |V| x 3: what was returned last, velocity at its end - mean

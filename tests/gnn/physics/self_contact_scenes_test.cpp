@@ -11,6 +11,7 @@
 #include "collision/self_tangles.h"
 #include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/xpbd_stepper.h"
 
 namespace cloth {
 namespace {
@@ -126,6 +127,16 @@ TEST(SelfContactScenes, TheReferenceKeepsLayersApartToo) {
         EXPECT_TRUE(tangles.find(state.x).empty());
     }
     EXPECT_GE(converged, 8);
+}
+
+TEST(SelfContactScenes, SubstepsOfSpringsKeepLayersApartToo) {
+    const LayerScene scene = folded_sheet();
+    XpbdSettings settings;
+    settings.self_contact.thickness = 4e-3;
+    XpbdStepper stepper(scene.garment, settings);
+    ClothState state;
+    EXPECT_EQ(most_tangles(scene, stepper, 30, state), 0u);
+    EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.2);
 }
 
 TEST(SelfContactScenes, ClothThatDoesNotMeetItselfMovesAsWithoutBitByBit) {
