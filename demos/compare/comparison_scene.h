@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bullet_ext/bodySegments.h"
+#include "collision/self_contact_settings.h"
 #include "data/boundary.h"
 #include "data/cloth_state.h"
 
@@ -33,6 +34,9 @@ class ComparisonScene {
 
     /// Frames in which the garment settles from its rest pose; 0: it starts in its rest pose.
     virtual int lead_in_frames() const { return 0; }
+
+    /// Whether the garment keeps off itself; solvers that know nothing of it go without.
+    virtual SelfContactSettings self_contact() const { return {}; }
 
     /// Hulls of the animated body for Bullet's own solver; none: Bullet has the obstacles' shapes.
     virtual std::vector<BodySegment> segments() const { return {}; }

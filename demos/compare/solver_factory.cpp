@@ -72,6 +72,7 @@ Integrator take_integrator(std::string& name) {
 std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& scene) {
     ImplicitSettings settings;
     settings.potential.integrator = take_integrator(name);
+    settings.potential.self_contact = scene.self_contact();
     if (name != "reference") settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
     return std::make_unique<ImplicitStepper>(scene.garment(), settings);
 }
@@ -81,6 +82,7 @@ std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonSce
     if (name == "quasi-newton") {
         QuasiNewtonSettings controlled = QuasiNewtonSettings::controlled();
         controlled.potential.integrator = integrator;
+        controlled.potential.self_contact = scene.self_contact();
         return make_physics_cloth(scene.garment(), controlled);
     }
     const size_t cross = name.find('x');
@@ -88,6 +90,7 @@ std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonSce
     QuasiNewtonSettings settings;
     settings.iterations = iterations_of(first, "quasi-newton-", 0, 1000);
     settings.potential.integrator = integrator;
+    settings.potential.self_contact = scene.self_contact();
     auto stepper = std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
     if (cross == std::string::npos) return stepper;
     return std::make_unique<SubsteppedStepper>(scene.garment(), std::move(stepper),
@@ -97,6 +100,7 @@ std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonSce
 std::unique_ptr<Stepper> make_xpbd(const std::string& name, const ComparisonScene& scene) {
     XpbdSettings settings;
     settings.substeps = iterations_of(name, "xpbd-", 1, 1000);
+    settings.self_contact = scene.self_contact();
     return std::make_unique<XpbdStepper>(scene.garment(), settings);
 }
 
@@ -112,6 +116,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
     const std::string variant = network.substr(0, network.find('+'));
     LearnedStepperSettings learned;
     learned.potential.integrator = integrator;
+    learned.potential.self_contact = scene.self_contact();
     if (variant != network) learned.refine = iterations_of(network, variant + "+", 0, 100);
     const Weights weights = Weights::load(weights_file(variant, settings.weights));
     if (torch && !settings.torch)
@@ -123,7 +128,9 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
         predictor = std::make_shared<Engine>(weights, EngineSettings{settings.threads});
     auto stepper = std::make_unique<LearnedStepper>(scene.garment(), std::move(predictor), learned);
     if (variant != network) return stepper;  // NAME+K: exactly that in every frame
-    return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper));
+    GuardSettings guard;
+    guard.solver.potential.self_contact = scene.self_contact();
+    return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), guard);
 }
 
 }  // namespace

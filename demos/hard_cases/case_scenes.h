@@ -16,6 +16,10 @@ HardSceneParts armpit_pinch();
 HardSceneParts crotch_pinch();
 HardSceneParts closing_boxes();
 
+// cloth against itself: layer_scenes.cpp
+HardSceneParts falls_on_edge();
+HardSceneParts two_layers();
+
 // pins: pin_scenes.cpp
 HardSceneParts yanked_corner();
 HardSceneParts stretch_3();

@@ -21,6 +21,7 @@ struct Bounds {
     const char* reason = "";        ///< for these numbers
     double least_top_speed = 0.0;   ///< RMS speed (m/s) that some frame must reach: a solver that
                                     ///< does not get through a step moves cloth in slow motion
+    double tangles = none;  ///< edges that pass through faces of the garment, in every frame
 };
 
 /// A scene on which cloth solvers fail.

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "collision/metrics.h"
+#include "collision/self_tangles.h"
 
 namespace cloth {
 namespace {
@@ -31,6 +32,7 @@ class HardMeter {
           m_scene(scene),
           m_stepper(stepper),
           m_state(scene.start()),
+          m_tangles(scene.garment()),
           m_pictures(picture_frames(scene.frames())) {}
 
     bool advance(int frame) {
@@ -82,6 +84,8 @@ class HardMeter {
         m_run.stretch_p99.push_back(measure_stretch(garment, m_state.x).p99);
         m_run.rms_speed.push_back(rms(motion) / m_scene.dt());
         m_motion_mm.push_back(1e3 * rms(motion));
+        if (m_bounds.tangles < Bounds::none)
+            m_run.tangles.push_back(static_cast<double>(m_tangles.find(m_state.x).size()));
         check(frame);
         if (is_impaled(outside, garment.rest().faces, m_state.x))
             fail(frame, "a limb is through the cloth");
@@ -110,6 +114,9 @@ class HardMeter {
             fail(frame, text("stretched to %.2f (at most %.2f)", stretch, m_bounds.stretch_p99));
         if (speed > m_bounds.rms_speed)
             fail(frame, text("RMS speed %.1f m/s (at most %.1f)", speed, m_bounds.rms_speed));
+        if (!m_run.tangles.empty() && m_run.tangles.back() > m_bounds.tangles)
+            fail(frame, text("%.0f edges pass through faces (at most %.0f)", m_run.tangles.back(),
+                             m_bounds.tangles));
     }
 
     void check_the_end(int frame) {
@@ -142,6 +149,7 @@ class HardMeter {
     Stepper& m_stepper;
     Proximity m_proximity;
     ClothState m_state;
+    SelfTangles m_tangles;
     std::vector<int> m_pictures;
     std::vector<double> m_motion_mm;
     HardRun m_run;

@@ -18,6 +18,7 @@ struct HardSceneParts {
     std::vector<BodySegment> segments = {};                 ///< of an animated body, for Bullet
     /// Why a garment at x does not belong to the scene any more, such as "fell through"; optional.
     std::function<std::string(const Boundary&, const Points& x)> loss = nullptr;
+    SelfContactSettings self_contact = {};
 };
 
 /// A hard case as all solvers of the reports are given their scenes. Frames are as long as the
@@ -36,6 +37,7 @@ class HardScene : public ComparisonScene {
     Boundary boundary_of_frame(int frame) const {
         return boundary(frame * dt(), (frame + 1) * dt());
     }
+    SelfContactSettings self_contact() const override { return m_parts.self_contact; }
     std::vector<BodySegment> segments() const override { return m_parts.segments; }
     std::string loss(const Boundary& boundary, const Points& x) const override {
         return m_parts.loss ? m_parts.loss(boundary, x) : std::string();

@@ -1,0 +1,109 @@
+// What self-contact costs per frame: steps of ten quasi-Newton iterations without and with it, and
+// its parts alone.
+//
+//     build/release/tests/bench/self_contact_bench
+//
+// `meets`: a sheet folded in half that has come to lie on the floor, each vertex near another
+// layer. `apart`: a sheet that hangs over a ball and meets itself nowhere.
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+
+#include "collision/self_crossings.h"
+#include "collision/self_tangles.h"
+#include "gnn/physics/quasi_newton_stepper.h"
+#include "tests/gnn/physics/self_contact_scenes.h"
+
+namespace cloth {
+namespace {
+
+using testing::LayerScene;
+
+constexpr double dt = 1.0 / 30.0, thickness = 4e-3;
+constexpr int frames_before = 12;
+
+LayerScene draped_sheet(int vertices) {
+    Garment garment("sheet", make_sheet(0.5, 0.5, vertices), Fabric::soft_cotton());
+    ClothState start = ClothState::at_rest(garment);
+    start.x.col(1).array() += 0.16;
+    return {std::move(garment), std::move(start), testing::outside({testing::ball(0.15)})};
+}
+
+QuasiNewtonSettings solver(double layer_thickness) {
+    QuasiNewtonSettings settings;
+    settings.potential.self_contact.thickness = layer_thickness;
+    settings.potential.self_contact.threads = 1;
+    return settings;
+}
+
+/// A scene after some frames, with the state that benchmarks step again and again.
+struct Moment {
+    LayerScene scene;
+    ClothState state;
+
+    explicit Moment(LayerScene made) : scene(std::move(made)), state(scene.start) {
+        QuasiNewtonStepper stepper(scene.garment, solver(thickness), {0.1, 1});
+        for (int frame = 0; frame < frames_before; ++frame) stepper.step(scene.boundary, dt, state);
+    }
+};
+
+const Moment& moment(bool meets, int vertices) {
+    static std::map<std::pair<bool, int>, std::unique_ptr<Moment>> made;
+    std::unique_ptr<Moment>& it = made[{meets, vertices}];
+    if (!it)
+        it = std::make_unique<Moment>(meets ? testing::folded_sheet(vertices)
+                                            : draped_sheet(vertices));
+    return *it;
+}
+
+void step(benchmark::State& state) {
+    const Moment& now = moment(state.range(0) != 0, static_cast<int>(state.range(1)));
+    QuasiNewtonStepper stepper(now.scene.garment, solver(state.range(2) != 0 ? thickness : 0.0),
+                               {0.1, 1});
+    ClothState moving = now.state;
+    stepper.step(now.scene.boundary, dt, moving);
+    for (auto _ : state) {
+        moving = now.state;
+        stepper.step(now.scene.boundary, dt, moving);
+    }
+}
+
+void pairs(benchmark::State& state) {
+    const Moment& now = moment(state.range(0) != 0, static_cast<int>(state.range(1)));
+    SelfProximity proximity(now.scene.garment, thickness);
+    const Points motion = dt * now.state.v;
+    for (auto _ : state) proximity.find(now.state.x, motion, 1.5 * thickness, 1);
+    state.counters["pairs"] = static_cast<double>(proximity.pairs().size());
+}
+
+void crossings(benchmark::State& state) {
+    const Moment& now = moment(state.range(0) != 0, static_cast<int>(state.range(1)));
+    SelfCrossings search(now.scene.garment);
+    const Points end = now.state.x + dt * now.state.v;
+    for (auto _ : state) search.find(now.state.x, end, 1);
+}
+
+void tangles(benchmark::State& state) {
+    const Moment& now = moment(state.range(0) != 0, static_cast<int>(state.range(1)));
+    SelfTangles search(now.scene.garment);
+    for (auto _ : state) search.find(now.state.x, 1);
+}
+
+#define CLOTH_LAYER_BENCHMARK(function)       \
+    BENCHMARK(function)                       \
+        ->ArgsProduct({{0, 1}, {1000, 4000}}) \
+        ->ArgNames({"meets", "vertices"})     \
+        ->Unit(benchmark::kMillisecond)
+BENCHMARK(step)
+    ->ArgsProduct({{0, 1}, {1000, 4000}, {0, 1}})
+    ->ArgNames({"meets", "vertices", "self_contact"})
+    ->Unit(benchmark::kMillisecond);
+CLOTH_LAYER_BENCHMARK(pairs);
+CLOTH_LAYER_BENCHMARK(crossings);
+CLOTH_LAYER_BENCHMARK(tangles);
+
+}  // namespace
+}  // namespace cloth
+
+BENCHMARK_MAIN();
