@@ -75,9 +75,9 @@ struct btGnnSolverStatus {
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
 ///   act as Bullet documents them; m_materials do if the settings say so, else the fabric decides.
+/// - Cloth that rests sleeps and costs nothing until something about it changes, see ClothSleep.
 /// - The rest shape is the shape of the first step. Later transform() and translate() move the
-/// cloth
-///   and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
+///   cloth and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
 ///
 /// Remove soft bodies from the world before deleting them, and keep the solver until then.
 class btGnnSoftBodySolver : public btDefaultSoftBodySolver {

@@ -83,6 +83,7 @@ bool allSolidsKnown(const ClothTick& tick) {
 }  // namespace
 
 void ClothReactions::collect(const ClothTick& tick) {
+    forgetAbsent(tick.near);
     for (auto& entry : m_accounts) {
         entry.second.taken.setZero();
         entry.second.nodes.clear();
@@ -337,33 +338,31 @@ void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Acco
     account.plan_time = tick.length;
 }
 
-void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
-    m_last_impulse.setZero();
+/// The pointer of a body that is gone must not be followed.
+void ClothReactions::forgetAbsent(const std::vector<NearSolid>& near) {
     const auto is_there = [&](const btRigidBody* body) {
-        for (const NearSolid& obstacle : near)
-            if (obstacle.body == body) return true;
+        for (const NearSolid& solid : near)
+            if (solid.body == body) return true;
         for (int a = 0; a < m_body.m_anchors.size(); ++a)
             if (m_body.m_anchors[a].m_body == body) return true;
         return false;
     };
-    for (auto it = m_accounts.begin(); it != m_accounts.end();) {
-        // First of all: the pointer of a body that is gone must not be followed.
-        if (!is_there(it->first)) {
-            it = m_accounts.erase(it);
-            continue;
-        }
-        btRigidBody& body = *it->first;
-        Account& account = it->second;
+    for (auto it = m_accounts.begin(); it != m_accounts.end();)
+        it = is_there(it->first) ? std::next(it) : m_accounts.erase(it);
+}
+
+void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
+    m_last_impulse.setZero();
+    forgetAbsent(near);
+    for (auto& [body, account] : m_accounts) {
         const double part = h < account.plan_time ? h / account.plan_time : 1.0;
         const Vector6 now = part * account.planned;
         account.planned -= now;
         account.plan_time = std::max(0.0, account.plan_time - h);
-        if (isDynamic(body) && now.allFinite()) {
-            body.applyCentralImpulse(toBullet(Vec3(now.head<3>())));
-            body.applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
-            m_last_impulse += now.head<3>();
-        }
-        ++it;
+        if (!isDynamic(*body) || !now.allFinite()) continue;
+        body->applyCentralImpulse(toBullet(Vec3(now.head<3>())));
+        body->applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
+        m_last_impulse += now.head<3>();
     }
 }
 

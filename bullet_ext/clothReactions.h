@@ -84,6 +84,7 @@ class ClothReactions {
         bool anchored = false;
     };
 
+    void forgetAbsent(const std::vector<NearSolid>& near);
     void findHolders(const ClothTick& tick);
     Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
     void chargeSide(const ClothTick& tick, int node, const Vec3& impulse, Account& account) const;
