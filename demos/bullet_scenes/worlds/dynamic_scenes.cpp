@@ -44,7 +44,8 @@ void mixed(SceneWorld& scene) {
     scene.addSoft(rope);
     btRigidBody* weight =
         scene.addRigid(new btBoxShape({0.06f, 0.06f, 0.06f}), {0.1f, 0.74f, 0}, 0.1f);
-    rope->appendAnchor(rope->m_nodes.size() - 1, weight);
+    rope->appendAnchor(rope->m_nodes.size() - 1, weight,
+                       /*disableCollisionBetweenLinkedBodies=*/true);
     btSoftBody* ball =
         btSoftBodyHelpers::CreateEllipsoid(scene.info(), {0.7f, 0.8f, 0}, {0.2f, 0.2f, 0.2f}, 128);
     ball->m_materials[0]->m_kLST = 0.3f;
