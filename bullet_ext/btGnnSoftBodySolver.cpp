@@ -16,7 +16,8 @@ namespace {
 bool hasFiniteNodes(const btSoftBody& body) {
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (!cloth::toVec3(body.m_nodes[i].m_x).allFinite() ||
-            !cloth::toVec3(body.m_nodes[i].m_v).allFinite())
+            !cloth::toVec3(body.m_nodes[i].m_v).allFinite() ||
+            !std::isfinite(body.m_nodes[i].m_im))  // setTotalMass(0) makes it infinite
             return false;
     return true;
 }

@@ -30,7 +30,7 @@ struct btGnnSolverSettings {
     bool useBodyDensity = false;    ///< true: the fabric's density is the body's mass per area;
                                   ///< false: the cloth moves as its fabric does, whatever it weighs
     double obstacleReach = 0.1;  ///< how far around cloth obstacles are looked for (m), 0.02 to 1
-    double sleepMotion = 2e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, up to
+    double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, up to
                                  ///< 0.05; 0: it never does
     int maxFailedSteps = 3;      ///< after so many failures in a row Bullet steps the body
 };
@@ -45,7 +45,8 @@ struct btGnnSolverStatus {
     int clothBodies = 0;          ///< stepped by a Stepper in the last world step
     int bulletBodies = 0;         ///< stepped by Bullet's own code
     int sleepingBodies = 0;       ///< of the cloth bodies, those that rest and cost nothing
-    int frozenBodies = 0;         ///< not stepped at all: their nodes are not finite
+    int frozenBodies = 0;         ///< not stepped at all: positions, velocities or masses
+                                  ///< of their nodes are not finite
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
     double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m)
@@ -74,9 +75,9 @@ struct btGnnSolverStatus {
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
 ///   act as Bullet documents them; m_materials do if the settings say so, else the fabric decides.
+/// - Cloth that rests sleeps and costs nothing until something about it changes, see ClothSleep.
 /// - The rest shape is the shape of the first step. Later transform() and translate() move the
-/// cloth
-///   and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
+///   cloth and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
 ///
 /// Remove soft bodies from the world before deleting them, and keep the solver until then.
 class btGnnSoftBodySolver : public btDefaultSoftBodySolver {

@@ -276,7 +276,8 @@ std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const
     };
     const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
     std::vector<NearSolid> solids;
-    if (std::none_of(objects.begin(), objects.end(), dynamic)) return solids;
+    if (body.m_anchors.size() == 0 && std::none_of(objects.begin(), objects.end(), dynamic))
+        return solids;
     for (const btCollisionObject* object : objects) {
         Track& track = update(*object);
         if (track.distances.empty())

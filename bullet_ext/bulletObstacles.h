@@ -72,7 +72,7 @@ class BulletObstacles {
                                const TimeSpan& span);
 
     /// The objects among them that are not animated meshes, as they are at `time` (s, from the
-    /// start of the world step); none if no dynamic body is among them.
+    /// start of the world step); none if no dynamic body is among them and `body` has no anchors.
     std::vector<NearSolid> solidsNear(const btSoftBody& body, const Vec3& low, const Vec3& high,
                                       double time);
 

@@ -69,29 +69,39 @@ bool floatsFreely(const btSoftBody& body, const ClothTick& tick) {
         if (!(body.m_nodes[pin].m_im > 0)) return false;
     for (int a = 0; a < body.m_anchors.size(); ++a)
         if (!isDynamic(*body.m_anchors[a].m_body)) return false;
+    return std::all_of(tick.near.begin(), tick.near.end(),
+                       [](const NearSolid& solid) { return solid.body != nullptr; });
+}
+
+/// Whether the solids near the cloth are all that its stepper saw.
+bool allSolidsKnown(const ClothTick& tick) {
     size_t parts = 0;
-    for (const NearSolid& solid : tick.near)
-        if (solid.body) parts += solid.parts->size();
+    for (const NearSolid& solid : tick.near) parts += solid.parts->size();
     return parts == tick.boundary.obstacles.size();
 }
 
 }  // namespace
 
 void ClothReactions::collect(const ClothTick& tick) {
+    forgetAbsent(tick.near);
     for (auto& entry : m_accounts) {
         entry.second.taken.setZero();
         entry.second.nodes.clear();
         entry.second.mass = 0.0;
         entry.second.meeting = 0.0;
         entry.second.anchored = false;
-        entry.second.middle.setZero();
+        entry.second.sides = {};
     }
     findHolders(tick);
     const bool held = std::any_of(m_holder.begin(), m_holder.end(),
                                   [](const btRigidBody* body) { return body != nullptr; });
-    if (held) findImpulses(tick);
-    if (held && floatsFreely(m_body, tick)) shareRest();
+    if (held) {
+        findOwners(tick);
+        findImpulses(tick);
+    }
+    const bool floats = floatsFreely(m_body, tick) && allSolidsKnown(tick);
     for (auto it = m_accounts.begin(); it != m_accounts.end();) {
+        closeSides(*it->first, floats, it->second);
         settle(tick, *it->first, it->second);
         const bool done = it->second.nodes.empty() && it->second.planned.norm() < 1e-12;
         it = done ? m_accounts.erase(it) : std::next(it);
@@ -102,6 +112,7 @@ void ClothReactions::collect(const ClothTick& tick) {
 void ClothReactions::findHolders(const ClothTick& tick) {
     const size_t count = static_cast<size_t>(tick.to.x.rows());
     m_holder.assign(count, nullptr);
+    m_held.assign(count, 0);
     m_touch.resize(tick.to.x.rows(), 3);
     m_distance.assign(count, std::numeric_limits<double>::infinity());
     const Points& x = tick.to.x;
@@ -113,11 +124,11 @@ void ClothReactions::findHolders(const ClothTick& tick) {
             if (distance < m_distance[static_cast<size_t>(i)]) {
                 m_distance[static_cast<size_t>(i)] = distance;
                 m_holder[static_cast<size_t>(i)] = obstacle.body;
+                m_held[static_cast<size_t>(i)] = 1;
                 m_touch.row(i) = point;
             }
     };
     for (const NearSolid& obstacle : tick.near) {
-        if (!obstacle.body) continue;
         for (int i = 0; i < static_cast<int>(count); ++i) touch(obstacle, x.row(i), {i});
         for (const auto& [a, b] : tick.garment.edges())
             touch(obstacle, 0.5 * (x.row(a) + x.row(b)), {a, b});
@@ -127,7 +138,10 @@ void ClothReactions::findHolders(const ClothTick& tick) {
                   {faces(f, 0), faces(f, 1), faces(f, 2)});
     }
     releasePinching(tick);
-    for (int pin : tick.garment.pins()) m_holder[static_cast<size_t>(pin)] = nullptr;
+    for (int pin : tick.garment.pins()) {
+        m_holder[static_cast<size_t>(pin)] = nullptr;
+        m_held[static_cast<size_t>(pin)] = 1;
+    }
     for (int a = 0; a < m_body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         if (isHardAnchor(anchor) && anchor.m_node->m_im > 0 && isDynamic(*anchor.m_body))
@@ -135,18 +149,39 @@ void ClothReactions::findHolders(const ClothTick& tick) {
     }
 }
 
-/// The impulse on the holder of a node, without what a contact cannot give.
-Vec3 ClothReactions::withinFriction(const ClothTick& tick, int node, const Vec3& impulse) const {
+/// The impulse on the body, without what a contact of this normal cannot give.
+Vec3 ClothReactions::withinFriction(const btRigidBody& body, const Vec3& normal,
+                                    const Vec3& impulse) const {
+    const double push = std::max(0.0, -impulse.dot(normal));
+    const Vec3 rub = impulse - impulse.dot(normal) * normal;
+    const double most = static_cast<double>(m_body.m_cfg.kDF * body.getFriction()) * push;
+    return -push * normal + (rub.norm() > most ? most / rub.norm() : 1.0) * rub;
+}
+
+void ClothReactions::chargeSide(const ClothTick& tick, int node, const Vec3& impulse,
+                                Account& account) const {
     const btRigidBody* holder = m_holder[static_cast<size_t>(node)];
-    for (const NearSolid& solid : tick.near) {
-        if (solid.body != holder) continue;
-        const Vec3 normal = solid.outward(m_touch.row(node), kPinch);
-        const double push = std::max(0.0, -impulse.dot(normal));
-        const Vec3 rub = impulse - impulse.dot(normal) * normal;
-        const double most = static_cast<double>(m_body.m_cfg.kDF * holder->getFriction()) * push;
-        return -push * normal + (rub.norm() > most ? most / rub.norm() : 1.0) * rub;
+    Vec3 normal = Vec3::Zero();
+    for (const NearSolid& solid : tick.near)
+        if (solid.body == holder) normal = solid.outward(m_touch.row(node), kPinch);
+    const Vec3 local = toMatrix(holder->getWorldTransform().getBasis()).transpose() * normal;
+    Eigen::Index axis;
+    local.cwiseAbs().maxCoeff(&axis);
+    Side& side = account.sides[static_cast<size_t>(2 * axis + (local[axis] < 0.0))];
+    side.impulse += impulse;
+    side.normal += normal;
+    side.arm += Vec3(m_touch.row(node)) - centreOf(*holder);
+    ++side.count;
+}
+
+/// @param all  nothing else holds the cloth: what the cones leave is the body's, too
+void ClothReactions::closeSides(const btRigidBody& body, bool all, Account& account) const {
+    for (const Side& side : account.sides) {
+        if (side.count == 0) continue;
+        const Vec3 given = withinFriction(body, side.normal.stableNormalized(), side.impulse);
+        account.taken.head<3>() += all ? side.impulse : given;
+        account.taken.tail<3>() += (side.arm / side.count).cross(given);
     }
-    return impulse;
 }
 
 /// Whether the node lies between its holder and another solid.
@@ -172,55 +207,76 @@ void ClothReactions::releasePinching(const ClothTick& tick) {
     }
 }
 
-/// Momentum balance of every node; what its holder gave it goes on the holder's account.
+/// The held node that each node is nearest to, in edges.
+void ClothReactions::findOwners(const ClothTick& tick) {
+    m_owner.assign(m_held.size(), -1);
+    m_queue.clear();
+    for (size_t i = 0; i < m_held.size(); ++i)
+        if (m_held[i]) {
+            m_owner[i] = static_cast<int>(i);
+            m_queue.push_back(static_cast<int>(i));
+        }
+    // What holds the cloth without being known would be taken for one of these.
+    if (!allSolidsKnown(tick)) return;
+    if (m_neighbours.size() != m_held.size()) {
+        m_neighbours.assign(m_held.size(), {});
+        for (const auto& [a, b] : tick.garment.edges()) {
+            m_neighbours[static_cast<size_t>(a)].push_back(b);
+            m_neighbours[static_cast<size_t>(b)].push_back(a);
+        }
+    }
+    for (size_t next = 0; next < m_queue.size(); ++next) {
+        const auto i = static_cast<size_t>(m_queue[next]);
+        for (int j : m_neighbours[i])
+            if (m_owner[static_cast<size_t>(j)] < 0) {
+                m_owner[static_cast<size_t>(j)] = m_owner[i];
+                m_queue.push_back(j);
+            }
+    }
+}
+
+/// Momentum balance of every node, summed over the nodes that a held one owns; what its holder gave
+/// goes on the holder's account.
 void ClothReactions::findImpulses(const ClothTick& tick) {
     const double h = tick.length;
-    m_impulses.resize(tick.to.x.rows(), 3);
+    m_impulses.setZero(tick.to.x.rows(), 3);
     const bool known = tick.stepper.internal_forces(tick.to.x, m_internal);
     if (known) m_internal *= massRatio(m_body, tick.garment);
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        const int owner = m_owner[static_cast<size_t>(i)];
         const double mass = massOf(m_body.m_nodes[i]);
+        if (owner < 0 || mass == 0.0) continue;
         Vec3 velocity = tick.to.v.row(i) - tick.from.v.row(i);
         velocity -= h * tick.boundary.gravity;
         if (tick.boundary.accelerations.size())
             velocity -= h * tick.boundary.accelerations.row(i).transpose();
-        m_impulses.row(i) = mass * velocity;
-        if (known && mass > 0.0) m_impulses.row(i) -= h * m_internal.row(i);
-        btRigidBody* holder = m_holder[static_cast<size_t>(i)];
-        if (!holder) continue;
-        Account& account = m_accounts[holder];
-        const Vec3 arm = Vec3(tick.to.x.row(i)) - centreOf(*holder);
-        const bool anchored = tick.garment.is_pinned()[static_cast<size_t>(i)] != 0;
-        Vec3 impulse = -m_impulses.row(i).transpose();
-        if (!anchored) impulse = withinFriction(tick, i, impulse);
-        m_impulses.row(i) += impulse.transpose();  // what is left for shareRest()
-        account.taken.head<3>() += impulse;
-        account.taken.tail<3>() += arm.cross(impulse);
-        account.nodes.push_back(i);
-        account.anchored |= anchored;
-        const Vec3 met =
-            toVec3(holder->getVelocityInLocalPoint(toBullet(arm))) - Vec3(tick.from.v.row(i));
-        account.meeting = std::max(account.meeting, met.norm());
-        account.mass += mass;
-        account.middle += mass * arm;
+        m_impulses.row(owner) += mass * velocity;
+        if (known) m_impulses.row(owner) -= h * m_internal.row(i);
     }
+    for (int i = 0; i < m_body.m_nodes.size(); ++i)
+        if (m_holder[static_cast<size_t>(i)]) charge(tick, i);
 }
 
-/// There is a rest where the stepper did not converge. Cloth that only
-/// dynamic bodies hold must not lose it.
-void ClothReactions::shareRest() {
-    Vec3 rest = Vec3::Zero();
-    double held = 0.0;
-    rest -= m_impulses.colwise().sum().transpose();
-    for (const auto& entry : m_accounts) held += entry.second.mass;
-    if (!(held > 0.0)) return;
-    for (auto& entry : m_accounts) {
-        Account& account = entry.second;
-        const Vec3 share = (account.mass / held) * rest;
-        account.taken.head<3>() += share;
-        if (account.mass > 0.0)
-            account.taken.tail<3>() += (account.middle / account.mass).cross(share);
+/// Puts what a held node took on its holder's account.
+void ClothReactions::charge(const ClothTick& tick, int node) {
+    const btRigidBody& holder = *m_holder[static_cast<size_t>(node)];
+    Account& account = m_accounts[m_holder[static_cast<size_t>(node)]];
+    const bool anchored = tick.garment.is_pinned()[static_cast<size_t>(node)] != 0;
+    const double mass = massOf(m_body.m_nodes[node]);
+    const Vec3 arm = Vec3(tick.to.x.row(node)) - centreOf(holder);
+    const Vec3 impulse = -m_impulses.row(node).transpose();
+    if (anchored) {
+        account.taken.head<3>() += impulse;
+        account.taken.tail<3>() += arm.cross(impulse);
+    } else {
+        chargeSide(tick, node, impulse, account);
     }
+    account.nodes.push_back(node);
+    account.anchored |= anchored;
+    account.mass += mass;
+    const Vec3 met =
+        toVec3(holder.getVelocityInLocalPoint(toBullet(arm))) - Vec3(tick.from.v.row(node));
+    account.meeting = std::max(account.meeting, met.norm());
 }
 
 std::vector<ClothReactions::Follower> ClothReactions::followersOf(const ClothTick& tick,
@@ -282,33 +338,31 @@ void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Acco
     account.plan_time = tick.length;
 }
 
-void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
-    m_last_impulse.setZero();
+/// The pointer of a body that is gone must not be followed.
+void ClothReactions::forgetAbsent(const std::vector<NearSolid>& near) {
     const auto is_there = [&](const btRigidBody* body) {
-        for (const NearSolid& obstacle : near)
-            if (obstacle.body == body) return true;
+        for (const NearSolid& solid : near)
+            if (solid.body == body) return true;
         for (int a = 0; a < m_body.m_anchors.size(); ++a)
             if (m_body.m_anchors[a].m_body == body) return true;
         return false;
     };
-    for (auto it = m_accounts.begin(); it != m_accounts.end();) {
-        // First of all: the pointer of a body that is gone must not be followed.
-        if (!is_there(it->first)) {
-            it = m_accounts.erase(it);
-            continue;
-        }
-        btRigidBody& body = *it->first;
-        Account& account = it->second;
+    for (auto it = m_accounts.begin(); it != m_accounts.end();)
+        it = is_there(it->first) ? std::next(it) : m_accounts.erase(it);
+}
+
+void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
+    m_last_impulse.setZero();
+    forgetAbsent(near);
+    for (auto& [body, account] : m_accounts) {
         const double part = h < account.plan_time ? h / account.plan_time : 1.0;
         const Vector6 now = part * account.planned;
         account.planned -= now;
         account.plan_time = std::max(0.0, account.plan_time - h);
-        if (isDynamic(body) && now.allFinite()) {
-            body.applyCentralImpulse(toBullet(Vec3(now.head<3>())));
-            body.applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
-            m_last_impulse += now.head<3>();
-        }
-        ++it;
+        if (!isDynamic(*body) || !now.allFinite()) continue;
+        body->applyCentralImpulse(toBullet(Vec3(now.head<3>())));
+        body->applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
+        m_last_impulse += now.head<3>();
     }
 }
 

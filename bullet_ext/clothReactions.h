@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <vector>
 
@@ -25,11 +26,12 @@ struct ClothTick {
 /// Gives dynamic rigid bodies the impulses that contacts and anchors took from them.
 ///
 /// What a step changed in a node's momentum, less gravity, node forces and the fabric's own forces,
-/// came from outside: from the body that the node is anchored to or touches (itself, or the middle
-/// of an edge or face of it). Cloth that is pinched between a body and another solid hands nothing
-/// on: the two touch each other through it, and Bullet's own contact pushes them apart. What
-/// contacts give keeps within Coulomb's cone: it pushes, and rubs by no more than the friction of
-/// both. Momentum is counted in the soft body's node masses. Where nothing but dynamic bodies
+/// came from outside: from what the node is anchored to or touches (itself, or the middle of an
+/// edge or face of it). Other nodes have such a rest where the stepper did not converge; it is that
+/// of the nearest node that is held. Cloth that is pinched between a body and another solid hands
+/// nothing on: the two touch each other through it, and Bullet's own contact pushes them apart.
+/// What contacts give keeps within Coulomb's cone: it pushes, and rubs by no more than the friction
+/// of both. Momentum is counted in the soft body's node masses. Where nothing but dynamic bodies
 /// supports the cloth, momentum is conserved to rounding.
 ///
 /// The stepper took the body's motion as given, however light the body is. So body and cloth are
@@ -64,7 +66,15 @@ class ClothReactions {
         Vec3 arm;
         double weight;
     };
+    /// Nodes that touch one side of a body: single impulses are noisy and cancel within it.
+    struct Side {
+        Vec3 impulse = Vec3::Zero();  ///< on the body (N s)
+        Vec3 normal = Vec3::Zero();   ///< sum over the nodes, away from the body
+        Vec3 arm = Vec3::Zero();      ///< sum over the nodes, from the body's centre (m)
+        int count = 0;
+    };
     struct Account {
+        std::array<Side, 6> sides;          ///< by the direction that the normal is nearest to
         Vector6 taken = Vector6::Zero();    ///< impulse of this tick (N s, N m s)
         Vector6 planned = Vector6::Zero();  ///< what the rest of the present tick hands over
         double plan_time = 0.0;             ///< that rest (s)
@@ -72,23 +82,29 @@ class ClothReactions {
         double mass = 0.0;                  ///< of those nodes (kg)
         double meeting = 0.0;               ///< fastest that body and nodes met (m/s)
         bool anchored = false;
-        Vec3 middle = Vec3::Zero();  ///< sum of mass times arm (kg m)
     };
 
+    void forgetAbsent(const std::vector<NearSolid>& near);
     void findHolders(const ClothTick& tick);
-    Vec3 withinFriction(const ClothTick& tick, int node, const Vec3& impulse) const;
+    Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
+    void chargeSide(const ClothTick& tick, int node, const Vec3& impulse, Account& account) const;
+    void closeSides(const btRigidBody& body, bool all, Account& account) const;
     bool isPinched(const ClothTick& tick, int node, const NearSolid& holder) const;
     void releasePinching(const ClothTick& tick);
     void findImpulses(const ClothTick& tick);
-    void shareRest();
+    void charge(const ClothTick& tick, int node);
+    void findOwners(const ClothTick& tick);
     std::vector<Follower> followersOf(const ClothTick& tick, const btRigidBody& body,
                                       const Account& account) const;
     void settle(const ClothTick& tick, const btRigidBody& body, Account& account);
 
     btSoftBody& m_body;
     std::map<btRigidBody*, Account> m_accounts;
-    std::vector<btRigidBody*> m_holder;  ///< |V|: null: nobody
-    std::vector<double> m_distance;      ///< |V| (m): to the holder
+    std::vector<btRigidBody*> m_holder;          ///< |V|: null: nobody that could be pushed
+    std::vector<char> m_held;                    ///< |V|: by anything at all
+    std::vector<std::vector<int>> m_neighbours;  ///< |V|
+    std::vector<int> m_owner, m_queue;           ///< |V|: the held node a node belongs to, or -1
+    std::vector<double> m_distance;              ///< |V| (m): to the holder
     Points m_touch;     ///< |V| x 3 (m): where the node, or its edge or face, touches
     Points m_impulses;  ///< |V| x 3 (N s): from outside
     Points m_internal;  ///< |V| x 3 (N)

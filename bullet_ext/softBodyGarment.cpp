@@ -65,6 +65,20 @@ std::map<Edge, std::vector<std::pair<int, bool>>> facesAtEdges(const Faces& face
     return edges;
 }
 
+/// A face twice would be an edge of three faces, or a bag without inside; better say what it is.
+void checkFacesDiffer(const std::string& name, const Faces& faces) {
+    std::map<std::array<int, 3>, int> seen;
+    for (int f = 0; f < static_cast<int>(faces.rows()); ++f) {
+        std::array<int, 3> corners = {faces(f, 0), faces(f, 1), faces(f, 2)};
+        std::sort(corners.begin(), corners.end());
+        const auto [it, inserted] = seen.try_emplace(corners, f);
+        if (!inserted)
+            throw ArgumentError(
+                name + ", faces " + std::to_string(it->second) + " and " + std::to_string(f),
+                "join the same nodes", "remove one of them");
+    }
+}
+
 /// Turns faces so that neighbours run along their common edge in opposite directions.
 void orientFaces(const std::string& name, Faces& faces) {
     const auto edges = facesAtEdges(faces);
@@ -210,6 +224,7 @@ Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_d
     const std::string name = softBodyName(body);
     checkCloth(body);
     TriMesh rest{restPositions(body), faceNodes(body)};
+    checkFacesDiffer(name, rest.faces);
     orientFaces(name, rest.faces);
     if (use_body_density) {
         fabric.density = bodyDensity(body, rest.vertices, rest.faces);

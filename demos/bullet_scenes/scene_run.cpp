@@ -21,6 +21,16 @@ double milliseconds_of(const std::function<void()>& work) {
         .count();
 }
 
+/// Median over the means of successive windows of 1/30 s, from step `begin` on.
+double median_of_windows(const std::vector<double>& times, size_t begin, int rate) {
+    const auto window = static_cast<size_t>(std::max(1, rate / 30));
+    std::vector<double> means;
+    for (size_t i = begin; i + window <= times.size(); i += window)
+        means.push_back(mean({times.begin() + static_cast<std::ptrdiff_t>(i),
+                              times.begin() + static_cast<std::ptrdiff_t>(i + window)}));
+    return median(means);
+}
+
 }  // namespace
 
 SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& settings,
@@ -51,10 +61,9 @@ SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& setting
         }
         if (progress) progress(i + 1, steps);
     }
-    row.ms_median = median(times);
     const auto last = std::min<size_t>(times.size(), static_cast<size_t>(settings.rate));
-    row.ms_median_last_second =
-        median({times.end() - static_cast<std::ptrdiff_t>(last), times.end()});
+    row.ms_median = median_of_windows(times, 0, settings.rate);
+    row.ms_median_last_second = median_of_windows(times, times.size() - last, settings.rate);
     result.last = probe.cloth();
     if (solver)
         for (const btGnnSolverMessage& message : solver->status().messages)

@@ -1,5 +1,7 @@
 // The whole chain: a Bullet world whose cloth is stepped by the physical solver.
 
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,12 +21,12 @@ namespace {
 /// A level floor of 4 m x 4 m at height 0 as a triangle mesh.
 struct Floor {
     btTriangleMesh mesh;
-    Floor() {
+    explicit Floor(double size = 1.0) {
         const TriMesh square = square_mesh(5);
         const auto corner = [&](Eigen::Index f, int c) {
             const Vec3 x = square.vertices.row(square.faces(f, c));
-            return btVector3(static_cast<btScalar>(4 * x.x() - 2), 0,
-                             static_cast<btScalar>(4 * x.z() - 2));
+            return btVector3(static_cast<btScalar>(size * (4 * x.x() - 2)), 0,
+                             static_cast<btScalar>(size * (4 * x.z() - 2)));
         };
         for (Eigen::Index f = 0; f < square.faces.rows(); ++f)
             mesh.addTriangle(corner(f, 0), corner(f, 1), corner(f, 2));
@@ -124,12 +126,32 @@ TEST(ClothWorld, AnimatedMeshCarriesClothUp) {
 
 TEST(ClothWorld, EveryKindOfShapeHoldsCloth) {
     Floor floor;
-    const std::vector<std::pair<btCollisionShape*, btVector3>> shapes = {
+    Floor half(0.5);
+    std::vector<std::pair<btCollisionShape*, btVector3>> shapes = {
         {new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0}},
         {new btBoxShape({1, 0.2f, 1}), {0, -0.2f, 0}},
         {new btCylinderShape({1, 0.2f, 1}), {0, -0.2f, 0}},
         {new btBvhTriangleMeshShape(&floor.mesh, true), {0, 0, 0}},
     };
+    std::vector<float> heights(9, 0.0f);
+    auto* field =
+        new btHeightfieldTerrainShape(3, 3, heights.data(), 1, -1, 1, 1, PHY_FLOAT, false);
+    field->setLocalScaling({2, 1, 2});
+    shapes.push_back({field, {0, 0, 0}});
+    auto* gimpact = new btGImpactMeshShape(&floor.mesh);
+    gimpact->updateBound();
+    shapes.push_back({gimpact, {0, 0, 0}});
+    btBvhTriangleMeshShape small(&half.mesh, true);
+    shapes.push_back({new btScaledBvhTriangleMeshShape(&small, {2, 1, 2}), {0, 0, 0}});
+    auto* compound = new btCompoundShape;
+    btBoxShape slab({1, 0.1f, 1});
+    compound->addChildShape(btTransform(btQuaternion::getIdentity(), {0, -0.1f, 0}), &slab);
+    shapes.push_back({compound, {0, 0, 0}});
+    auto* hull = new btConvexHullShape;
+    for (int corner = 0; corner < 8; ++corner)
+        hull->addPoint(
+            {corner & 1 ? 1.0f : -1.0f, corner & 2 ? 0.1f : -0.1f, corner & 4 ? 1.0f : -1.0f});
+    shapes.push_back({hull, {0, -0.1f, 0}});
     for (const auto& [shape, position] : shapes) {
         btGnnSoftBodySolver solver(quasi_newton());
         World world(&solver);

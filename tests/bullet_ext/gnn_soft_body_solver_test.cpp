@@ -269,12 +269,24 @@ TEST(GnnSolver, SoftBodiesThatAreNotClothMoveBitForBitAsWithBulletsSolver) {
             btSoftBodyHelpers::CreateEllipsoid(world.info(), {0, 1, 2}, {0.3f, 0.3f, 0.3f}, 64);
         ball->m_cfg.kPR = 50;
         others[w].push_back(world.add(ball));
+        btSoftBody* clusters =
+            btSoftBodyHelpers::CreateEllipsoid(world.info(), {2, 1, 0}, {0.3f, 0.3f, 0.3f}, 64);
+        clusters->m_cfg.collisions = btSoftBody::fCollision::CL_RS;
+        clusters->generateClusters(8);
+        others[w].push_back(world.add(clusters));
+        const btVector3 corners[] = {{-2, 1, 0}, {-1.6f, 1, 0}, {-2, 1.4f, 0}, {-2, 1, 0.4f}};
+        const btScalar masses[] = {1, 1, 1, 1};
+        auto* tetra = new btSoftBody(&world.info(), 4, corners, masses);
+        tetra->appendTetra(0, 1, 2, 3);
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j) tetra->appendLink(i, j);
+        others[w].push_back(world.add(tetra));
         world.step(1.0 / 60.0, 60);
     }
     for (size_t b = 0; b < others[0].size(); ++b)
         expect_same(positions(*others[0][b]), positions(*others[1][b]));
     EXPECT_EQ(solver.status().clothBodies, 1);
-    EXPECT_EQ(solver.status().bulletBodies, 2);
+    EXPECT_EQ(solver.status().bulletBodies, 4);
 }
 
 TEST(GnnSolver, DetachedClothMovesBitForBitAsWithBulletsSolver) {

@@ -40,15 +40,17 @@ void mixed(SceneWorld& scene) {
     btSoftBody* rope = btSoftBodyHelpers::CreateRope(scene.info(), {0.1f, 1.4f, 0}, {0.1f, 0.8f, 0},
                                                      14, /*fixed ends=*/1);
     rope->m_cfg.piterations = 8;
-    rope->setTotalMass(0.1f);
+    rope->setTotalMass(0.5f);
     scene.addSoft(rope);
     btRigidBody* weight =
         scene.addRigid(new btBoxShape({0.06f, 0.06f, 0.06f}), {0.1f, 0.74f, 0}, 0.1f);
-    rope->appendAnchor(rope->m_nodes.size() - 1, weight);
+    rope->appendAnchor(rope->m_nodes.size() - 1, weight,
+                       /*disableCollisionBetweenLinkedBodies=*/true);
     btSoftBody* ball =
         btSoftBodyHelpers::CreateEllipsoid(scene.info(), {0.7f, 0.8f, 0}, {0.2f, 0.2f, 0.2f}, 128);
     ball->m_materials[0]->m_kLST = 0.3f;
-    ball->m_cfg.kPR = 20;
+    ball->m_cfg.kPR = 2;
+    ball->m_cfg.kDF = 1;
     ball->m_cfg.piterations = 4;
     ball->getCollisionShape()->setMargin(0.01f);
     ball->setTotalMass(0.3f, true);

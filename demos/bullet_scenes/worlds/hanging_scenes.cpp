@@ -35,7 +35,7 @@ void flag(SceneWorld& scene) {
     cloth->m_cfg.aeromodel = btSoftBody::eAeroModel::F_TwoSidedLiftDrag;
     cloth->m_cfg.kDG = 0.05f;
     cloth->m_cfg.kLF = 0.02f;
-    cloth->setWindVelocity({6, 0, 0.8f});
+    cloth->setWindVelocity({9, 0, 1.2f});
 }
 
 }  // namespace

@@ -1,0 +1,160 @@
+// Every body a user may hand over by mistake gets a documented answer: it is stepped as cloth, or
+// Bullet steps it and a message names body, place and remedy. Nothing crashes, nothing freezes the
+// world.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/bullet_ext/bullet_world.h"
+#include "tests/bullet_ext/physical_steppers.h"
+
+using namespace cloth;
+using namespace cloth::test;
+
+namespace {
+
+class BadInput : public testing::Test {
+ protected:
+    BadInput() : solver(quasi_newton(1.0 / 30.0, 3)), world(&solver) {
+        world.add(new btBoxShape({2, 0.5f, 2}), {0, -1.5f, 0});
+        healthy = world.add(patch(world.info(), {5, 0, 0}, 5));
+    }
+    /// Steps for a while; the healthy cloth must fall, and all nodes stay finite.
+    void run(btSoftBody* body) {
+        body->setUserIndex(7);
+        world.add(body);
+        world.step(1.0 / 60.0, 40);
+        EXPECT_LT(node(*healthy, 12).y(), -1.0);
+        for (int i = 0; i < body->m_nodes.size(); ++i) ASSERT_TRUE(node(*body, i).allFinite()) << i;
+    }
+    std::string messages() const {
+        std::string all;
+        for (const btGnnSolverMessage& message : solver.status().messages)
+            all += message.text + "\n";
+        return all;
+    }
+    void expect_cloth() {
+        EXPECT_EQ(messages(), "");
+        EXPECT_EQ(solver.status().clothBodies, 2);
+    }
+    void expect_told(const std::string& place, const std::string& problem) {
+        EXPECT_EQ(solver.status().clothBodies, 1);
+        EXPECT_EQ(solver.status().messages.size(), 1u) << messages();
+        for (const std::string& part :
+             {std::string("soft body 7"), place, problem, std::string("Remedy: ")})
+            EXPECT_NE(messages().find(part), std::string::npos) << part << " in: " << messages();
+    }
+
+    btGnnSoftBodySolver solver;
+    World world;
+    btSoftBody* healthy;
+};
+
+}  // namespace
+
+TEST_F(BadInput, ClosedClothIsCloth) {
+    btSoftBody* ball =
+        btSoftBodyHelpers::CreateEllipsoid(world.info(), {0, 0, 0}, {0.3f, 0.3f, 0.3f}, 64);
+    run(ball);
+    expect_cloth();
+}
+
+TEST_F(BadInput, UnconnectedPiecesAreCloth) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    const int first = body->m_nodes.size();
+    for (int k = 0; k < 3; ++k) body->appendNode({1.5f + 0.1f * (k == 1), 0, 0.1f * (k == 2)}, 1);
+    body->appendFace(first, first + 2, first + 1);
+    run(body);
+    expect_cloth();
+    EXPECT_LT(node(*body, first).y(), -0.8);
+}
+
+TEST_F(BadInput, AnEdgeOfThreeFacesIsTold) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->appendNode({0, 0.3f, 0}, 1);
+    body->appendFace(0, 1, 25);
+    body->appendFace(1, 0, 24);
+    run(body);
+    expect_told("edge 0-1", "more than two faces");
+}
+
+TEST_F(BadInput, DuplicateFacesAreTold) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    const auto nodes = body->m_faces[3].m_n;
+    const auto index = [&](int c) { return static_cast<int>(nodes[c] - &body->m_nodes[0]); };
+    const int a = index(0), b = index(1), c = index(2);
+    body->appendFace(b, c, a);
+    run(body);
+    expect_told("faces 3 and 32", "join the same nodes");
+}
+
+TEST_F(BadInput, ANodeWithoutFacesIsTold) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->appendNode({0, 1, 0}, 1);
+    run(body);
+    expect_told("25", "belongs to no face");
+}
+
+TEST_F(BadInput, AFaceWithoutAreaIsTold) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->m_nodes[1].m_x = body->m_nodes[0].m_x;
+    run(body);
+    expect_told("face", "area");
+}
+
+TEST_F(BadInput, AFaceThatNamesANodeTwiceIsLeftOutByBullet) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->appendFace(0, 0, 1);
+    run(body);
+    expect_cloth();
+}
+
+TEST_F(BadInput, NoFacesIsBulletsOwnBusiness) {
+    run(btSoftBodyHelpers::CreateRope(world.info(), {0, 0, 0}, {1, 0, 0}, 8, 0));
+    EXPECT_EQ(messages(), "");
+    EXPECT_EQ(solver.status().bulletBodies, 1);
+}
+
+TEST_F(BadInput, NoMassAtAllIsClothOfPins) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    for (int i = 0; i < body->m_nodes.size(); ++i) body->setMass(i, 0);
+    run(body);
+    expect_cloth();
+    EXPECT_EQ(node(*body, 12).y(), 0.0);
+}
+
+TEST_F(BadInput, ATotalMassOfZeroIsInfiniteInBulletAndFreezesTheBody) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->setTotalMass(0);
+    run(body);
+    expect_told("node 0", "inverse mass");
+    EXPECT_EQ(solver.status().frozenBodies, 1);
+    EXPECT_EQ(node(*body, 12).y(), 0.0);
+}
+
+TEST_F(BadInput, ANegativeInverseMassIsTold) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->m_nodes[4].m_im = -1;
+    body->setUserIndex(7);
+    world.add(body);
+    world.step(1.0 / 60.0);
+    expect_told("node 4", "inverse mass");
+}
+
+TEST_F(BadInput, PositionsFarFromTheOriginAreCloth) {
+    btSoftBody* body = patch(world.info(), {1000, 0, 0});
+    run(body);
+    expect_cloth();
+    EXPECT_LT(node(*body, 12).y(), -0.8);
+}
+
+TEST_F(BadInput, AnUnsupportedObstacleIsToldAndPassedThrough) {
+    world.add(new btEmptyShape, {0, -0.2f, 0});
+    btUniformScalingShape* scaled = new btUniformScalingShape(new btSphereShape(0.3f), 0.5f);
+    world.add(scaled, {0, -0.4f, 0});
+    run(patch(world.info(), {0, 0, 0}, 9));
+    expect_cloth();
+    delete scaled->getChildShape();
+}
