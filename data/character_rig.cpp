@@ -72,6 +72,9 @@ class CharacterReader {
 
     void add_nodes(const aiNode& node, int parent) {
         const int index = static_cast<int>(m_rig.nodes.size());
+        if (!to_eigen(node.mTransformation).matrix().allFinite())
+            fail(std::string("node ") + node.mName.C_Str(), "its transform is not finite",
+                 "export it again");
         m_nodes.try_emplace(node.mName.C_Str(), index);
         m_rig.nodes.push_back({parent, to_eigen(node.mTransformation), -1});
         for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], index);
