@@ -7,11 +7,11 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <utility>
 
 #include "data/errors.h"
+#include "data/mesh_file_check.h"
 
 namespace cloth {
 
@@ -60,9 +60,7 @@ class CharacterReader {
     }
 
     const aiScene& open(Assimp::Importer& importer) const {
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(m_path, error))
-            fail("", "there is no such file", "check the path");
+        check_mesh_file(m_path);
         const aiScene* scene = importer.ReadFile(m_path, aiProcess_Triangulate);
         if (!scene || !scene->mRootNode)
             fail("", std::string("cannot be read: ") + importer.GetErrorString(),

@@ -21,9 +21,6 @@ std::string extension_of(const std::string& path) {
     return extension;
 }
 
-namespace {
-
-/// The first .dae of a zip archive, "" if there is none.
 std::string read_zipped_dae(const std::string& path) {
     const std::unique_ptr<void, int (*)(void*)> archive(unzOpen(path.c_str()), unzClose);
     if (!archive) return "";
@@ -42,6 +39,8 @@ std::string read_zipped_dae(const std::string& path) {
     }
     return "";
 }
+
+namespace {
 
 bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
