@@ -64,7 +64,7 @@ Garment random_sheet(Random& random) {
 }
 
 TEST(BoundariesFuzz, StepsAreFiniteOrRefusedAndRepeatable) {
-    for_each_seed(120, [](unsigned seed) {
+    for_each_seed(80, [](unsigned seed) {
         SCOPED_TRACE(repeat_with(seed));
         Random random(seed);
         const Garment garment = random_sheet(random);

@@ -11,7 +11,7 @@ struct FileFormat {
     std::string sample;  ///< a small valid file
     /// Reads a file; returns what is wrong with the object that was made of it, "" if nothing is.
     std::function<std::string(const std::string& path)> load;
-    unsigned rounds = 500;
+    unsigned rounds = 300;
 };
 
 /// Expects the invariants of README.md of mutations of the sample, of the sample cut anywhere, and

@@ -55,7 +55,7 @@ void step_with_all(const Garment& garment, const Boundary& boundary) {
 
 TEST(GarmentsFuzz, AreRefusedByNameOrStepped) {
     int stepped = 0, refused = 0;
-    for_each_seed(250, [&](unsigned seed) {
+    for_each_seed(100, [&](unsigned seed) {
         SCOPED_TRACE(repeat_with(seed));
         Random random(seed);
         TriMesh mesh = random_mesh(random);
