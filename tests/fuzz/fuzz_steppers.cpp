@@ -36,6 +36,7 @@ std::unique_ptr<Stepper> guarded(const Garment& garment) {
     GuardSettings settings;
     settings.max_substeps = 4;
     settings.solver.iterations = 2;
+    settings.solver.least_iterations = 0;
     return std::make_unique<GuardedStepper>(garment, xpbd(garment), settings);
 }
 
