@@ -10,13 +10,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <random>
 #include <sstream>
 
 #include "data/errors.h"
 #include "data/paths.h"
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -35,8 +35,7 @@ std::array<double, 3> split_factor(double x) {
 }
 
 Points load_base_vertices(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw LoadError(path, "", "cannot be opened", "restore the shared data folder");
+    std::istringstream file(read_file(path));
     std::vector<Vec3> vertices;
     std::string line, key;
     while (std::getline(file, line)) {
@@ -98,8 +97,7 @@ BodyShape sample_body_shape(uint64_t seed) {
 }
 
 ShapeTarget load_shape_target(const std::string& path, int vertex_count) {
-    std::ifstream file(path);
-    if (!file) throw LoadError(path, "", "cannot be opened", "restore the shared data folder");
+    std::istringstream file(read_file(path));
     ShapeTarget target;
     std::vector<Vec3> offsets;
     std::string line;

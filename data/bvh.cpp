@@ -8,12 +8,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <sstream>
 
 #include "data/errors.h"
 #include "data/motion.h"
+#include "data/printable.h"
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -29,9 +30,7 @@ constexpr const char* channel_names[] = {"Xposition", "Yposition", "Zposition",
 /// The lines of a file, split into words; knows where it is for error messages.
 class LineReader {
  public:
-    explicit LineReader(const std::string& path) : m_path(path), m_stream(path) {
-        if (!m_stream) throw LoadError(path, "", "cannot be opened", "check path and permissions");
-    }
+    explicit LineReader(const std::string& path) : m_path(path), m_stream(read_file(path)) {}
 
     /// Words of the next line that is not blank; false at the end of the file.
     bool next(std::vector<std::string>& words) {
@@ -52,7 +51,7 @@ class LineReader {
     }
 
     [[noreturn]] void fail(const std::string& problem, const std::string& remedy) const {
-        throw LoadError(m_path, "line " + std::to_string(m_line), problem, remedy);
+        throw LoadError(m_path, "line " + std::to_string(m_line), printable(problem), remedy);
     }
 
     double number(const std::string& word) const {
@@ -67,7 +66,7 @@ class LineReader {
 
  private:
     std::string m_path;
-    std::ifstream m_stream;
+    std::istringstream m_stream;
     int m_line = 0;
 };
 
@@ -183,6 +182,8 @@ double parse_frame_time(LineReader& reader) {
         reader.fail("'Frame Time: s' is missing", "write it after 'Frames: n'");
     const double time = reader.number(words[2]);
     if (time <= 0.0) reader.fail("the frame time is not positive", "write it in seconds");
+    // Resampling makes frames of 1/30 s: a time in other units would make millions of them.
+    if (time > 10.0) reader.fail("the frame time is above 10 s", "write it in seconds");
     return time;
 }
 

@@ -7,11 +7,11 @@
 #include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <utility>
 
 #include "data/errors.h"
+#include "data/mesh_file_check.h"
 
 namespace cloth {
 
@@ -60,9 +60,7 @@ class CharacterReader {
     }
 
     const aiScene& open(Assimp::Importer& importer) const {
-        std::error_code error;
-        if (!std::filesystem::is_regular_file(m_path, error))
-            fail("", "there is no such file", "check the path");
+        check_mesh_file(m_path);
         const aiScene* scene = importer.ReadFile(m_path, aiProcess_Triangulate);
         if (!scene || !scene->mRootNode)
             fail("", std::string("cannot be read: ") + importer.GetErrorString(),
@@ -72,6 +70,9 @@ class CharacterReader {
 
     void add_nodes(const aiNode& node, int parent) {
         const int index = static_cast<int>(m_rig.nodes.size());
+        if (!to_eigen(node.mTransformation).matrix().allFinite())
+            fail(std::string("node ") + node.mName.C_Str(), "its transform is not finite",
+                 "export it again");
         m_nodes.try_emplace(node.mName.C_Str(), index);
         m_rig.nodes.push_back({parent, to_eigen(node.mTransformation), -1});
         for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], index);

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "data/errors.h"
-#include "data/ply_length.h"
+#include "data/mesh_file_check.h"
 #include "data/vertex_order.h"
 
 namespace cloth {
@@ -68,12 +68,7 @@ void check_faces(const std::string& path, const aiMesh& mesh) {
 }
 
 const aiScene& read_scene(const std::string& path, Assimp::Importer& importer) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        throw LoadError(path, "", "there is no such file", "check the path");
-    if (std::filesystem::file_size(path, error) == 0)
-        throw LoadError(path, "", "the file is empty", "export or download it again");
-    if (extension_of(path) == "ply") check_ply_length(path);
+    check_mesh_file(path);
     const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
     if (!scene)
         throw LoadError(path, "", std::string("cannot be read: ") + importer.GetErrorString(),

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <vector>
 
 #include "data/errors.h"
+#include "data/printable.h"
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -83,7 +83,9 @@ class Walker {
         long values = 1;
         if (property.count_bytes > 0 && !read_count(property.count_bytes, values)) return false;
         if (values < 0) return false;
-        if (m_format != PlyFormat::ascii) return skip_bytes(values * property.bytes);
+        if (m_format != PlyFormat::ascii)
+            return static_cast<size_t>(values) <= m_text.size() &&
+                   skip_bytes(values * property.bytes);
         for (long i = 0; i < values; ++i)
             if (!skip_word()) return false;
         return true;
@@ -130,17 +132,21 @@ class Walker {
 }  // namespace
 
 void check_ply_length(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const std::string text = read_file(path);
     const Header header = read_header(path, text);
     Walker walker(text, header);
-    for (const Element& element : header.elements)
+    for (const Element& element : header.elements) {
+        if (element.count < 0 || (element.count > 0 && element.properties.empty()))
+            throw LoadError(path, "header, element " + printable(element.name),
+                            "it has a negative number of rows, or rows without properties",
+                            "export the mesh again");
         for (long row = 0; row < element.count; ++row)
             for (const Property& property : element.properties)
                 if (!walker.skip(property))
-                    throw LoadError(path, element.name + " " + std::to_string(row),
+                    throw LoadError(path, printable(element.name) + " " + std::to_string(row),
                                     "the file ends too early",
                                     "it is truncated: export or download it again");
+    }
 }
 
 }  // namespace cloth

@@ -1,12 +1,13 @@
 #include "data/rig_recipe.h"
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "data/errors.h"
+#include "data/printable.h"
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -24,7 +25,7 @@ class RecipeReader {
     explicit RecipeReader(const std::string& path) : m_path(path) {}
 
     [[noreturn]] void fail(const std::string& place, const std::string& problem) const {
-        throw LoadError(m_path, place, problem, remedy);
+        throw LoadError(m_path, printable(place), printable(problem), remedy);
     }
 
     int look_up(const Index& index, const json& name, const std::string& place) const {
@@ -90,10 +91,9 @@ Vec3 RigPoint::position(const Points& skin) const {
 }
 
 RigRecipe load_rig_recipe(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw LoadError(path, "", "cannot be opened", "check path and permissions");
+    const std::string text = read_file(path);
     try {
-        return RecipeReader(path).recipe(json::parse(file));
+        return RecipeReader(path).recipe(json::parse(text));
     } catch (const json::exception& error) {
         throw LoadError(path, "", error.what(), remedy);
     }

@@ -1,9 +1,10 @@
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "data/errors.h"
+#include "data/printable.h"
+#include "data/read_file.h"
 #include "data/tshirt.h"
 
 namespace cloth {
@@ -48,7 +49,7 @@ double number_in(const std::string& path, const std::string& field, const Json& 
         throw LoadError(path, "field " + field, "it is not a number", "see data/tshirt.h");
     const double number = value.get<double>();
     if (!(number >= low && number <= high))
-        throw LoadError(path, "field " + field, value.dump() + " is out of range",
+        throw LoadError(path, "field " + field, printable(value.dump()) + " is out of range",
                         "give " + Json(low).dump() + " to " + Json(high).dump());
     return number;
 }
@@ -64,10 +65,9 @@ Vec3 point_in(const std::string& path, const std::string& field, const Json& val
 }
 
 Json read_json(const std::string& path) {
-    std::ifstream file(path);
-    if (!file) throw LoadError(path, "", "there is no such file", "check the path");
+    const std::string text = read_file(path);
     try {
-        Json json = Json::parse(file);
+        Json json = Json::parse(text);
         if (json.is_object()) return json;
     } catch (const Json::exception& error) {
         throw LoadError(path, "", error.what(), "repair the JSON, or restore the file");
@@ -97,7 +97,8 @@ TshirtRecipe load_tshirt_recipe(const std::string& path) {
     }
     for (const auto& [name, value] : json.items())
         if (!known.count(name))
-            throw LoadError(path, "field " + name, "there is no such field", "see data/tshirt.h");
+            throw LoadError(path, "field " + printable(name), "there is no such field",
+                            "see data/tshirt.h");
     return recipe;
 }
 

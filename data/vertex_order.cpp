@@ -7,10 +7,10 @@
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
+
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -21,14 +21,6 @@ std::string extension_of(const std::string& path) {
     return extension;
 }
 
-namespace {
-
-std::string read_text(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-/// The first .dae of a zip archive, "" if there is none.
 std::string read_zipped_dae(const std::string& path) {
     const std::unique_ptr<void, int (*)(void*)> archive(unzOpen(path.c_str()), unzClose);
     if (!archive) return "";
@@ -48,12 +40,14 @@ std::string read_zipped_dae(const std::string& path) {
     return "";
 }
 
+namespace {
+
 bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
 /// fast_atof.h wants an exception that may be built from anything; assimp's own is not exported. It
-/// is never thrown here: only text that is a number is handed on.
+/// is thrown for what strtod() takes for a number and assimp does not.
 struct NotANumber : std::runtime_error {
     template <typename... Parts>
     explicit NotANumber(Parts&&...) : std::runtime_error("not a number") {}
@@ -65,7 +59,11 @@ bool read_number(const char*& cursor, float& as_assimp, double& value) {
     char* end = nullptr;
     value = std::strtod(cursor, &end);
     if (end == cursor || !std::isfinite(value)) return false;
-    Assimp::fast_atoreal_move<float, NotANumber>(cursor, as_assimp);
+    try {
+        Assimp::fast_atoreal_move<float, NotANumber>(cursor, as_assimp);
+    } catch (const NotANumber&) {
+        return false;
+    }
     cursor = end;
     return true;
 }
@@ -101,7 +99,8 @@ std::string attribute(const std::string& text, size_t tag, const std::string& na
     if (key == std::string::npos || key > end) return "";
     const size_t quote = key + name.size() + 2;
     const size_t closing = text.find(text[quote], quote + 1);
-    return closing > end ? "" : text.substr(quote + 1, closing - quote - 1);
+    if (closing == std::string::npos || closing > end) return "";
+    return text.substr(quote + 1, closing - quote - 1);
 }
 
 /// The position list of one <geometry>: <vertices> names the <source> that holds the numbers.
@@ -139,8 +138,8 @@ std::map<std::string, FilePositions> collada_positions(const std::string& text) 
 
 std::map<std::string, FilePositions> read_file_positions(const std::string& path) {
     const std::string extension = extension_of(path);
-    if (extension == "obj") return {{"", obj_positions(read_text(path))}};
-    if (extension == "dae") return collada_positions(read_text(path));
+    if (extension == "obj") return {{"", obj_positions(read_file(path))}};
+    if (extension == "dae") return collada_positions(read_file(path));
     if (extension == "zae") return collada_positions(read_zipped_dae(path));
     return {};
 }

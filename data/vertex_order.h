@@ -11,6 +11,9 @@ namespace cloth {
 /// The ending of a file's name in lower case, without the dot.
 std::string extension_of(const std::string& path);
 
+/// The first .dae of a zip archive, "" if there is none.
+std::string read_zipped_dae(const std::string& path);
+
 /// Where a position stands in a file, and its value there at full precision.
 struct FilePosition {
     int index = 0;

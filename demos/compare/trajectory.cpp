@@ -52,8 +52,10 @@ Trajectory load_trajectory(const std::string& path) {
     file.read(reinterpret_cast<char*>(&header), sizeof(header));
     if (!file || !std::equal(std::begin(magic), std::end(magic), header.magic_bytes))
         throw LoadError(path, "header", "is not a trajectory", remedy);
+    const std::uint64_t size = std::filesystem::file_size(path);
     const std::uint64_t state_bytes = sizeof(double) * (1 + 6 * header.vertices);
-    if (std::filesystem::file_size(path) != sizeof(header) + header.states * state_bytes)
+    const bool overflows = header.vertices > size || header.states > size;
+    if (overflows || size != sizeof(header) + header.states * state_bytes)
         throw LoadError(path, "header", "does not fit the file's size", remedy);
     Trajectory trajectory(header.states);
     for (ClothState& state : trajectory) {

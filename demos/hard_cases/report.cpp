@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <utility>
 
 #include "data/errors.h"
+#include "data/read_file.h"
 #include "demos/compare/machine.h"
 #include "render/replaced_file.h"
 
@@ -17,8 +17,7 @@ static std::vector<HardRow> load_rows(const std::string& path) {
     std::vector<HardRow> rows;
     if (!std::filesystem::exists(path)) return rows;
     try {
-        std::ifstream file(path);
-        const ordered_json document = ordered_json::parse(file);
+        const ordered_json document = ordered_json::parse(read_file(path));
         for (const ordered_json& row : document.at("rows")) rows.push_back(row_from_json(row));
     } catch (const ordered_json::exception& error) {
         throw LoadError(path, "", error.what(), "delete it, or run without --resume");

@@ -143,9 +143,10 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
     m_layers.finish(state.x, m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved,
                     report);
     m_v = (m_x - state.x) / dt;
+    if (!m_x.allFinite() || !m_v.allFinite()) return false;  // very short steps overflow
     m_time.end_step(state, m_x, m_v, dt);
-    state.v = m_v;
     state.x = m_x;
+    state.v = m_v;
     state.time += dt;
     return true;
 }

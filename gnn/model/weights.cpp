@@ -5,10 +5,11 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "data/errors.h"
+#include "data/printable.h"
+#include "data/read_file.h"
 
 namespace cloth {
 
@@ -39,6 +40,11 @@ struct Problem {
     std::string place, text;
 };
 
+/// Features are divided by their deviations.
+bool is_divisor(float value) {
+    return value > 0.0f && std::isfinite(1.0f / value);
+}
+
 Problem find_problem(const ModelConfig& config,
                      const std::map<std::string, WeightTensor>& tensors) {
     const auto expected = expected_tensors(config);
@@ -53,6 +59,13 @@ Problem find_problem(const ModelConfig& config,
             if (!std::isfinite(tensor.data[i]))
                 return {"tensor " + name, "element " + std::to_string(i) + " is not finite"};
     }
+    for (const auto& [name, shape] : statistics_shapes(config)) {
+        if (name.find(".deviation") == std::string::npos) continue;
+        const std::vector<float>& data = tensors.at(name).data;
+        for (size_t i = 0; i < data.size(); ++i)
+            if (!is_divisor(data[i]))
+                return {"tensor " + name, "element " + std::to_string(i) + " is not positive"};
+    }
     if (tensors.size() != expected.size())
         return {"tensors", "there are " + std::to_string(tensors.size()) +
                                ", the configuration has " + std::to_string(expected.size())};
@@ -62,13 +75,11 @@ Problem find_problem(const ModelConfig& config,
 /// The parsed file: header and the bytes behind it.
 struct RawFile {
     json header;
-    std::vector<char> bytes;
+    std::string bytes;
 };
 
 RawFile read_raw(const std::string& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw LoadError(file, "", "cannot be opened", "check the path of the weights file");
-    const std::vector<char> all((std::istreambuf_iterator<char>(in)), {});
+    const std::string all = read_file(file);
     std::uint64_t length = 0;
     if (all.size() < sizeof length)
         throw LoadError(file, "header", "the file is truncated", train_again);
@@ -143,14 +154,14 @@ Weights Weights::load(const std::string& file) {
     const std::string version = metadata(raw, file, "version");
     if (version != std::to_string(ModelConfig::format_version))
         throw LoadError(file, "header, version",
-                        "is " + version + " where this program reads " +
+                        "is " + printable(version) + " where this program reads " +
                             std::to_string(ModelConfig::format_version),
                         train_again);
     Weights weights;
     weights.config = ModelConfig::from_json(metadata(raw, file, "config"), file);
     for (const auto& [name, entry] : raw.header.items())
         if (name != "__metadata__")
-            weights.tensors[name] = read_tensor(raw, entry, "tensor " + name, file);
+            weights.tensors[name] = read_tensor(raw, entry, "tensor " + printable(name), file);
     const Problem problem = find_problem(weights.config, weights.tensors);
     if (!problem.place.empty()) throw LoadError(file, problem.place, problem.text, train_again);
     return weights;

@@ -25,7 +25,8 @@ struct Weights {
     std::map<std::string, WeightTensor> tensors;  ///< parameter_shapes() and statistics_shapes()
 
     /// @throws LoadError naming file, tensor and reason: truncated, another version, a tensor that
-    ///         is missing, unknown, misshaped or holds a number that is not finite
+    ///         is missing, unknown, misshaped or holds a number that is not finite, or a deviation
+    ///         that is not positive
     static Weights load(const std::string& file);
 
     /// Writes a temporary file and renames it, so readers never see half a file.

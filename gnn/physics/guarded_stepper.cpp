@@ -98,6 +98,7 @@ GuardedStepper::GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> 
     : m_garment(&garment), m_inner(std::move(inner)), m_settings(std::move(settings)) {
     if (!m_inner) throw ArgumentError("stepper", "is null", "give the stepper to be guarded");
     check(m_settings);
+    QuasiNewtonStepper(garment, m_settings.solver);  // refuses its settings here, not in a step
 }
 
 StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState& state) {

@@ -25,6 +25,7 @@ TEST_F(ShapeTargetFile, BrokenRowsNameTheLine) {
         expect_load_error([&] { load_shape_target(file, 8); }, file, "line 2");
     }
     expect_load_error([&] { load_shape_target(path("none"), 8); }, "none", "cannot be opened");
+    expect_load_error([&] { load_shape_target(path(""), 8); }, path(""), "is a folder");
     expect_load_error([&] { BodyShapes shapes(path("folder")); }, "base.obj", "cannot be opened");
 }
 

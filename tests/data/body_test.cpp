@@ -176,6 +176,7 @@ TEST_F(RigRecipeFile, BrokenRecipesNameTheEntry) {
         const std::string file = write("broken.json", text);
         expect_load_error([&] { load_rig_recipe(file); }, file, message);
     }
+    expect_load_error([&] { load_rig_recipe(path("")); }, path(""), "is a folder");
 }
 
 TEST_F(RigRecipeFile, ARecipeForAnotherMeshIsRefused) {

@@ -234,6 +234,31 @@ TEST_F(MeshIo, TruncatedBinaryPlyIsRefusedWholeIsRead) {
     expect_error(write("cut.ply", whole.substr(0, whole.size() - 1)), "face 11: the file ends");
 }
 
+TEST_F(MeshIo, PlyElementWithoutPropertiesIsRefusedAtOnce) {
+    std::string text = ply("0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n", 3, 1);
+    text.insert(text.find("end_header"), "element nothing 4000000000000\n");
+    expect_error(write("endless.ply", text), "element nothing");
+}
+
+TEST_F(MeshIo, WhatAssimpCrashesOnIsRefusedBefore) {
+    expect_error(write("deep.gltf", std::string(600, '[')), "nested");
+    std::string tags;
+    for (int k = 0; k < 600; ++k) tags += "<a>";
+    expect_error(write("deep.dae", tags), "nested");
+    expect_error(write("skin.gltf", R"({"asset":{"version":"2.0"},"skins":[{"joints":[0]}]})"),
+                 "inverseBindMatrices");
+    expect_error(write("long.gltf", R"({"accessors":[{"count":4000000000,"type":"VEC3"}]})"),
+                 "larger than the file");
+    expect_error(write("count.dae", "<COLLADA><float_array count=\"inf\"/></COLLADA>"), "a count");
+    expect_error(write("no.zae", "PK\3\4 and then nothing"), "zip");
+}
+
+TEST_F(MeshIo, NumberThatOnlyCKnowsIsNoCrash) {
+    expect_error(write("hex.obj", "v 0 0 0\nv .0x1p+3 0 0\nv 0 - 0\nf 1 2 3\n"), "");
+    const TriMesh mesh = load_mesh(write("dot.obj", "v 0 0 0\nv 1. 0 0\nv 0 1 0\nf 1 2 3\n"));
+    EXPECT_EQ(mesh.vertices(1, 0), 1.0);
+}
+
 TEST_F(MeshIo, WritingIntoAMissingFolderFails) {
     TriMesh mesh;
     EXPECT_THROW(save_obj(path("no/such/folder.obj"), mesh), LoadError);

@@ -140,12 +140,15 @@ TEST_F(MotionFile, BrokenFilesNameLineAndRemedy) {
         {replaced(whole, "JOINT Spine", "BONE Spine"), "line 6: unexpected 'BONE'"},
         {replaced(whole, "OFFSET 0 0.8 0", "OFFSET 0 0.8"), "line 8: OFFSET needs three numbers"},
         {replaced(whole, "Frame Time: 0.1", "Frame Time: 0"), "line 18: the frame time is not"},
+        {replaced(whole, "Frame Time: 0.1", "Frame Time: 1e9"), "line 18: the frame time is above"},
+        {replaced(whole, "JOINT Spine", std::string("BO\0E", 4)), "line 6: unexpected 'BO?E'"},
     };
     for (const auto& [text, message] : broken) {
         const std::string file = write("broken.bvh", text);
         expect_load_error([&] { load_bvh(file); }, file, message);
     }
     expect_load_error([&] { load_bvh(path("none.bvh")); }, "none.bvh", "cannot be opened");
+    expect_load_error([&] { load_bvh(path("")); }, path(""), "is a folder");
 }
 
 TEST(Motions, AgreeWithAssimp) {

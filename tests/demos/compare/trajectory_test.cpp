@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 
@@ -48,6 +49,22 @@ TEST(Trajectory, BrokenFilesAreRefused) {
     save_trajectory(path, three_states());
     std::filesystem::resize_file(path, std::filesystem::file_size(path) - 8);
     EXPECT_THROW(load_trajectory(path), LoadError);
+}
+
+TEST(Trajectory, CountsThatOverflowAreRefused) {
+    const std::string path = temporary("overflow.traj");
+    const std::uint64_t huge = std::uint64_t{1} << 61;
+    // Both make the size of a file of the header and, in the first, one time.
+    for (const auto& [states, vertices] : {std::pair<std::uint64_t, std::uint64_t>{1, huge},
+                                           std::pair<std::uint64_t, std::uint64_t>{huge, 0}}) {
+        std::ofstream file(path, std::ios::binary);
+        file << "CLOTHTR1";
+        file.write(reinterpret_cast<const char*>(&states), sizeof states);
+        file.write(reinterpret_cast<const char*>(&vertices), sizeof vertices);
+        if (vertices > 0) file.write("12345678", 8);
+        file.close();
+        EXPECT_THROW(load_trajectory(path), LoadError) << states << " " << vertices;
+    }
 }
 
 TEST(Trajectory, RmseOfAShiftIsItsLength) {

@@ -58,6 +58,15 @@ TEST_F(LearnedStep, AddsScaledAccelerationsToTheGuess) {
     EXPECT_DOUBLE_EQ(m_state.time, m_dt);
 }
 
+TEST_F(LearnedStep, AVelocityThatOverflowsFailsTheStep) {
+    LearnedStepper learned = stepper(Vec3::Zero(), 0);
+    m_boundary.pin_targets.array() += 1.0;
+    const ClothState before = m_state;
+    EXPECT_FALSE(learned.step(m_boundary, 1e-309, m_state).finite);
+    EXPECT_EQ(m_state.x, before.x);
+    EXPECT_EQ(m_state.v, before.v);
+}
+
 TEST_F(LearnedStep, RefinesLikeTheSolverFromItsPrediction) {
     LearnedStepper learned = stepper(Vec3(0.0, -0.3, 0.0), 3);
     SurfaceContacts contacts;

@@ -104,6 +104,21 @@ TEST_F(WeightsFile, RefusesANumberThatIsNotFinite) {
     EXPECT_NE(refusal().find("not finite"), std::string::npos);
 }
 
+TEST_F(WeightsFile, RefusesADeviationThatCannotDivide) {
+    for (const float deviation : {0.0f, -1.0f, 1e-40f}) {
+        Weights weights = small_weights();
+        weights.tensors["statistics.edge.deviation"].data[1] = deviation;
+        EXPECT_THROW(weights.save(m_file), ArgumentError) << deviation;
+    }
+}
+
+TEST_F(WeightsFile, RefusesAFolder) {
+    std::filesystem::remove(m_file);
+    std::filesystem::create_directory(m_file);
+    EXPECT_NE(refusal().find("is a folder"), std::string::npos);
+    std::filesystem::remove(m_file);
+}
+
 TEST_F(WeightsFile, RefusesAFileThatIsSomethingElse) {
     write(std::string(4096, 'x'));
     EXPECT_NE(refusal().find("safetensors"), std::string::npos);

@@ -136,6 +136,9 @@ TEST_F(Guard, RefusesSettingsOutOfRange) {
     settings.max_substeps = 0;
     EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
     EXPECT_THROW(GuardedStepper(m_garment, nullptr), ArgumentError);
+    settings = {};
+    settings.solver.iterations = settings.solver.least_iterations - 1;
+    EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
 }
 
 }  // namespace
