@@ -32,10 +32,8 @@ QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
         throw ArgumentError("refine.iterations",
                             std::to_string(refine.iterations) + " is outside 0 to 1000",
                             "use 10, or 0 for the network alone");
-    if (refine.least < 0 || refine.least > refine.iterations)
-        throw ArgumentError("refine.least",
-                            std::to_string(refine.least) + " is outside 0 to refine.iterations, " +
-                                std::to_string(refine.iterations),
+    if (refine.least < 0 || refine.least > 1000)
+        throw ArgumentError("refine.least", std::to_string(refine.least) + " is outside 0 to 1000",
                             "use 10, or 0 to stop as soon as the tolerance is met");
     if (!(refine.tolerance >= 0.0) || refine.tolerance > 1e6)
         throw ArgumentError("refine.tolerance",

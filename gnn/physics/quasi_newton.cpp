@@ -36,7 +36,7 @@ QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     : m_settings(settings), m_matrix(garment) {
     check_range("iterations", settings.iterations, 0, 10000);
     check_range("tolerance", settings.tolerance, 0.0, 1e6);
-    check_range("least_iterations", settings.least_iterations, 0, settings.iterations);
+    check_range("least_iterations", settings.least_iterations, 0, 10000);
     check_range("history", settings.history, 0, 50);
     check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
     const Eigen::Index free = m_matrix.free_count();

@@ -10,7 +10,7 @@ struct QuasiNewtonSettings {
     int iterations =
         10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
-    int least_iterations = 0;  ///< but not before these, 0 to `iterations`
+    int least_iterations = 0;  ///< but not before these, 0 to 10000
 
     /// What a simulation should use: ten iterations as a rule, and up to a hundred in frames whose
     /// residual stays above 3 (cloth that is let go, a fabric of 5 kN/m). Ordinary frames of soft

@@ -159,8 +159,9 @@ TEST(QuasiNewton, GoesOnWhereTheResidualStaysHighAndNotBeforeTheLeastIterations)
     EXPECT_EQ(iterations(calm, settings), 4);
     EXPECT_GT(iterations(torn, settings), 10);
     EXPECT_LE(iterations(torn, QuasiNewtonSettings::controlled(4, 6)), 6);
+    EXPECT_EQ(iterations(calm, QuasiNewtonSettings::controlled(4, 2)), 2) << "never more than most";
     QuasiNewtonSettings wrong = settings;
-    wrong.least_iterations = 61;
+    wrong.least_iterations = -1;
     EXPECT_THROW(QuasiNewton(calm.garment, wrong), ArgumentError);
 }
 
