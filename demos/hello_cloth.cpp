@@ -13,7 +13,7 @@
 int main() {
     // The network, and how to make a stepper for a piece of cloth.
     auto weights = std::make_shared<const cloth::EngineWeights>(
-        cloth::Weights::load(cloth::asset_path("weights/fast.safetensors")));
+        cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
         return cloth::make_learned_cloth(garment, weights);
     });

@@ -27,7 +27,7 @@ int main(int argc, char** argv) try {
     const cloth::Garment shirt("tshirt", cloth::load_mesh(cloth::asset_path("garments/tshirt.obj")),
                                cloth::Fabric::soft_cotton());
     const auto weights = std::make_shared<const cloth::EngineWeights>(
-        cloth::Weights::load(cloth::asset_path("weights/fast.safetensors")));
+        cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
         return cloth::make_learned_cloth(garment, weights);
     });

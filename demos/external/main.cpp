@@ -13,7 +13,7 @@
 #include "gnn/model/learned_cloth.h"
 
 int main() {
-    const std::string file = cloth::asset_path("weights/fast.safetensors");
+    const std::string file = cloth::asset_path("weights/small.safetensors");
     auto weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
     btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
         return cloth::make_learned_cloth(garment, weights);

@@ -86,7 +86,7 @@ std::unique_ptr<Stepper> solver(const Garment& garment) {
 
 std::unique_ptr<Stepper> learned(const Garment& garment) {
     return make_learned_cloth(garment, std::make_shared<const EngineWeights>(
-                                           Weights::load(asset_path("weights/fast.safetensors"))));
+                                           Weights::load(asset_path("weights/small.safetensors"))));
 }
 
 INSTANTIATE_TEST_SUITE_P(Steppers, Incline,

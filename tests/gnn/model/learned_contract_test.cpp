@@ -32,10 +32,10 @@ StepperCase learned(const std::string& variant, int refine) {
 /// As shipped: refined and guarded.
 StepperCase shipped() {
     StepperCase result = learned("fast", 10);
-    result.name = "fastShipped";
+    result.name = "smallShipped";
     result.make = [](const Garment& garment) {
         return make_learned_cloth(garment, std::make_shared<const EngineWeights>(Weights::load(
-                                               asset_path("weights/fast.safetensors"))));
+                                               asset_path("weights/small.safetensors"))));
     };
     return result;
 }
