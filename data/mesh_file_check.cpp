@@ -2,11 +2,13 @@
 
 #include <unzip.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "data/errors.h"
 #include "data/ply_length.h"
@@ -53,17 +55,36 @@ void check_xml_depth(const std::string& path, const std::string& text) {
     }
 }
 
-/// Every count="..." is a number that the file is long enough for.
-void check_collada(const std::string& path, const std::string& text) {
-    check_xml_depth(path, text);
-    const std::string key = " count=\"";
+/// Every attribute of this name is a number that the file is long enough for.
+void check_numbers(const std::string& path, const std::string& text, const std::string& name) {
+    const std::string key = " " + name + "=\"";
     for (size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
         const size_t begin = at + key.size();
         const size_t end = text.find_first_not_of("0123456789", begin);
         const bool whole = end != std::string::npos && end > begin && text[end] == '"';
         if (!whole || end - begin > 9 || std::stoul(text.substr(begin, 9)) > text.size())
-            fail(path, "byte " + std::to_string(at), "a count does not fit the file");
+            fail(path, "byte " + std::to_string(at), "the " + name + " does not fit the file");
     }
+}
+
+/// Polygons have no more corners in all than the file has room for.
+void check_polygons(const std::string& path, const std::string& text) {
+    const std::string key = "<vcount>";
+    for (size_t at = text.find(key); at != std::string::npos; at = text.find(key, at + 1)) {
+        const size_t end = text.find('<', at + key.size());
+        std::istringstream numbers(text.substr(at + key.size(), end - at - key.size()));
+        size_t corners = 0;
+        for (size_t n; corners <= text.size() && numbers >> n;) corners += std::min(n, text.size());
+        if (corners >= text.size())
+            fail(path, "byte " + std::to_string(at),
+                 "polygons have more corners than fit the file");
+    }
+}
+
+void check_collada(const std::string& path, const std::string& text) {
+    check_xml_depth(path, text);
+    for (const char* name : {"count", "offset", "stride"}) check_numbers(path, text, name);
+    check_polygons(path, text);
 }
 
 /// The JSON of a .gltf file, or the first chunk of a .glb file.

@@ -249,7 +249,11 @@ TEST_F(MeshIo, WhatAssimpCrashesOnIsRefusedBefore) {
                  "inverseBindMatrices");
     expect_error(write("long.gltf", R"({"accessors":[{"count":4000000000,"type":"VEC3"}]})"),
                  "larger than the file");
-    expect_error(write("count.dae", "<COLLADA><float_array count=\"inf\"/></COLLADA>"), "a count");
+    expect_error(write("count.dae", "<COLLADA><float_array count=\"inf\"/></COLLADA>"),
+                 "the count");
+    expect_error(write("offset.dae", "<COLLADA><input offset=\"99999\"/></COLLADA>"), "the offset");
+    expect_error(write("corners.dae", "<COLLADA><vcount>3 100000000</vcount></COLLADA>"),
+                 "corners");
     expect_error(write("no.zae", "PK\3\4 and then nothing"), "zip");
 }
 

@@ -63,8 +63,9 @@ std::unique_ptr<Stepper> learned(const Garment& garment) {
 }
 
 bool same_bits(const Points& a, const Points& b) {
-    return a.rows() == b.rows() &&
-           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0;
+    if (a.rows() != b.rows()) return false;
+    const size_t bytes = sizeof(double) * static_cast<size_t>(a.size());
+    return bytes == 0 || std::memcmp(a.data(), b.data(), bytes) == 0;
 }
 
 bool pins_have_landed(const Garment& garment, const Boundary& boundary, const Points& x) {
