@@ -18,11 +18,6 @@ constexpr double kTouch = 5e-3;  // m
 // Cloth between two solids is this near to both, at least where it is deepest.
 constexpr double kPinch = 2e-2;  // m
 
-/// kg; 0 for nodes that nothing can move
-double massOf(const btSoftBody::Node& node) {
-    return node.m_im > 0 ? 1.0 / static_cast<double>(node.m_im) : 0.0;
-}
-
 bool isDynamic(const btRigidBody& body) {
     return body.getInvMass() > 0 && !body.isStaticOrKinematicObject();
 }
@@ -41,17 +36,6 @@ Eigen::Matrix<double, 6, 6> massMatrix(const btRigidBody& body) {
     const Eigen::Matrix3d turn = toMatrix(body.getCenterOfMassTransform().getBasis());
     matrix.bottomRightCorner<3, 3>() = turn * moments.asDiagonal() * turn.transpose();
     return matrix;
-}
-
-/// Node masses over the garment's: how much heavier the user's cloth is than its fabric.
-double massRatio(const btSoftBody& body, const Garment& garment) {
-    double of_nodes = 0.0, of_garment = 0.0;
-    for (int i = 0; i < body.m_nodes.size(); ++i)
-        if (body.m_nodes[i].m_im > 0) {
-            of_nodes += massOf(body.m_nodes[i]);
-            of_garment += garment.masses()[i];
-        }
-    return of_garment > 0.0 ? of_nodes / of_garment : 0.0;
 }
 
 /// Cloth spins no body faster than this per tick, whatever the lever: pins are extrapolated over a
@@ -84,10 +68,10 @@ bool allSolidsKnown(const ClothTick& tick) {
 
 void ClothReactions::collect(const ClothTick& tick) {
     forgetAbsent(tick.near);
+    m_mass_ratio = massRatio(m_body, tick.garment);
     for (auto& entry : m_accounts) {
         entry.second.taken.setZero();
         entry.second.nodes.clear();
-        entry.second.mass = 0.0;
         entry.second.meeting = 0.0;
         entry.second.anchored = false;
         entry.second.sides = {};
@@ -106,6 +90,11 @@ void ClothReactions::collect(const ClothTick& tick) {
         const bool done = it->second.nodes.empty() && it->second.planned.norm() < 1e-12;
         it = done ? m_accounts.erase(it) : std::next(it);
     }
+}
+
+/// kg; 0 for nodes that nothing can move
+double ClothReactions::massOf(const ClothTick& tick, int node) const {
+    return m_body.m_nodes[node].m_im > 0 ? m_mass_ratio * tick.garment.masses()[node] : 0.0;
 }
 
 /// The dynamic body that each node is anchored to or touches at the end of the tick.
@@ -241,10 +230,10 @@ void ClothReactions::findImpulses(const ClothTick& tick) {
     const double h = tick.length;
     m_impulses.setZero(tick.to.x.rows(), 3);
     const bool known = tick.stepper.internal_forces(tick.to.x, m_internal);
-    if (known) m_internal *= massRatio(m_body, tick.garment);
+    if (known) m_internal *= m_mass_ratio;
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         const int owner = m_owner[static_cast<size_t>(i)];
-        const double mass = massOf(m_body.m_nodes[i]);
+        const double mass = massOf(tick, i);
         if (owner < 0 || mass == 0.0) continue;
         Vec3 velocity = tick.to.v.row(i) - tick.from.v.row(i);
         velocity -= h * tick.boundary.gravity;
@@ -262,7 +251,6 @@ void ClothReactions::charge(const ClothTick& tick, int node) {
     const btRigidBody& holder = *m_holder[static_cast<size_t>(node)];
     Account& account = m_accounts[m_holder[static_cast<size_t>(node)]];
     const bool anchored = tick.garment.is_pinned()[static_cast<size_t>(node)] != 0;
-    const double mass = massOf(m_body.m_nodes[node]);
     const Vec3 arm = Vec3(tick.to.x.row(node)) - centreOf(holder);
     const Vec3 impulse = -m_impulses.row(node).transpose();
     if (anchored) {
@@ -273,7 +261,6 @@ void ClothReactions::charge(const ClothTick& tick, int node) {
     }
     account.nodes.push_back(node);
     account.anchored |= anchored;
-    account.mass += mass;
     const Vec3 met =
         toVec3(holder.getVelocityInLocalPoint(toBullet(arm))) - Vec3(tick.from.v.row(node));
     account.meeting = std::max(account.meeting, met.norm());
@@ -317,8 +304,7 @@ void ClothReactions::settle(const ClothTick& tick, const btRigidBody& body, Acco
     for (const Follower& follower : followers) {
         Eigen::Matrix<double, 3, 6> motion;
         motion << Eigen::Matrix3d::Identity(), -crossMatrix(follower.arm);
-        both +=
-            follower.weight * massOf(m_body.m_nodes[follower.node]) * (motion.transpose() * motion);
+        both += follower.weight * massOf(tick, follower.node) * (motion.transpose() * motion);
     }
     // A tick that was cut short has left something to hand over.
     Vector6 change = both.ldlt().solve(account.taken + account.planned);

@@ -31,8 +31,10 @@ struct ClothTick {
 /// of the nearest node that is held. Cloth that is pinched between a body and another solid hands
 /// nothing on: the two touch each other through it, and Bullet's own contact pushes them apart.
 /// What contacts give keeps within Coulomb's cone: it pushes, and rubs by no more than the friction
-/// of both. Momentum is counted in the soft body's node masses. Where nothing but dynamic bodies
-/// supports the cloth, momentum is conserved to rounding.
+/// of both. Momentum is counted in the masses that the cloth moves with: the soft body's mass,
+/// spread over its nodes like the garment's, which is by area. Where nothing but dynamic bodies
+/// supports the cloth, it is conserved to rounding. Counted in node masses of another spread, as
+/// setTotalMass() without `fromfaces` makes them, it would come and go as the cloth waves.
 ///
 /// The stepper took the body's motion as given, however light the body is. So body and cloth are
 /// brought to a common motion afterwards, as in an inelastic collision: with the impulse J that the
@@ -79,11 +81,11 @@ class ClothReactions {
         Vector6 planned = Vector6::Zero();  ///< what the rest of the present tick hands over
         double plan_time = 0.0;             ///< that rest (s)
         std::vector<int> nodes;             ///< that touch the body or are anchored to it
-        double mass = 0.0;                  ///< of those nodes (kg)
         double meeting = 0.0;               ///< fastest that body and nodes met (m/s)
         bool anchored = false;
     };
 
+    double massOf(const ClothTick& tick, int node) const;
     void forgetAbsent(const std::vector<NearSolid>& near);
     void findHolders(const ClothTick& tick);
     Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
@@ -99,6 +101,7 @@ class ClothReactions {
     void settle(const ClothTick& tick, const btRigidBody& body, Account& account);
 
     btSoftBody& m_body;
+    double m_mass_ratio = 1.0;  ///< of this tick, massRatio()
     std::map<btRigidBody*, Account> m_accounts;
     std::vector<btRigidBody*> m_holder;          ///< |V|: null: nobody that could be pushed
     std::vector<char> m_held;                    ///< |V|: by anything at all

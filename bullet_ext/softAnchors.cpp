@@ -22,15 +22,16 @@ Eigen::Matrix3d inverseMass(const btRigidBody& body, double node_inverse_mass, c
 
 }  // namespace
 
-void pullSoftAnchors(btSoftBody& body, const ClothState& state, double length, double world_step,
-                     Points& accelerations) {
+void pullSoftAnchors(btSoftBody& body, const Garment& garment, const ClothState& state,
+                     double length, double world_step, Points& accelerations) {
+    const double mass_ratio = body.m_anchors.size() > 0 ? massRatio(body, garment) : 0.0;
     const Vec3 gravity = toVec3(body.m_worldInfo->m_gravity);
     for (int a = 0; a < body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = body.m_anchors[a];
-        const double inverse_mass = anchor.m_node->m_im;
-        if (isHardAnchor(anchor) || !(inverse_mass > 0.0)) continue;
+        if (isHardAnchor(anchor) || !(anchor.m_node->m_im > 0)) continue;
         btRigidBody& rigid = *anchor.m_body;
         const int i = static_cast<int>(anchor.m_node - &body.m_nodes[0]);
+        const double inverse_mass = 1.0 / (mass_ratio * garment.masses()[i]);
         const Vec3 place = toVec3(rigid.getWorldTransform() * anchor.m_local);
         const Vec3 arm = place - toVec3(rigid.getCenterOfMassPosition());
         const Vec3 node_velocity = Vec3(state.v.row(i)) + length * gravity;

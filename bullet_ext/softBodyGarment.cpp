@@ -235,6 +235,16 @@ Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_d
     return Garment(name, std::move(rest), fabric, pinnedNodes(body));
 }
 
+double massRatio(const btSoftBody& body, const Garment& garment) {
+    double of_nodes = 0.0, of_garment = 0.0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (body.m_nodes[i].m_im > 0) {
+            of_nodes += 1.0 / static_cast<double>(body.m_nodes[i].m_im);
+            of_garment += garment.masses()[i];
+        }
+    return of_garment > 0.0 ? of_nodes / of_garment : 0.0;
+}
+
 void checkGarmentFits(const btSoftBody& body, const Garment& garment) {
     const std::string name = softBodyName(body) + " with garment " + garment.name();
     if (body.m_nodes.size() != garment.vertex_count() ||

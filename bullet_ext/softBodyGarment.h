@@ -40,6 +40,10 @@ Faces faceNodes(const btSoftBody& body);
 /// @throws ArgumentError naming the body, the node or edge, and the remedy
 Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_density);
 
+/// The body's mass over the garment's, both of the nodes that are free or anchored: times
+/// garment.masses() these are the masses that the body's cloth moves with.
+double massRatio(const btSoftBody& body, const Garment& garment);
+
 /// Throws ArgumentError unless the body is cloth with finite nodes and usable masses.
 void checkCloth(const btSoftBody& body);
 

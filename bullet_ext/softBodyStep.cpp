@@ -202,7 +202,7 @@ Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, const Vec3& lo
             boundary.accelerations.row(i) *= static_cast<double>(m_body.m_nodes[i].m_im);
         m_impulse.setZero();
     }
-    pullSoftAnchors(m_body, m_tick.from, m_tick.length, m_h, boundary.accelerations);
+    pullSoftAnchors(m_body, *m_garment, m_tick.from, m_tick.length, m_h, boundary.accelerations);
     return boundary;
 }
 

@@ -88,7 +88,8 @@ void SceneWorld::closeSystem() {
             m_rigid.erase(m_rigid.begin() + static_cast<std::ptrdiff_t>(i));
     for (btSoftBody* body : m_cloth) {
         body->m_cfg.kDP = 0;
-        const btScalar mass = body->getTotalMass() / static_cast<btScalar>(body->m_nodes.size());
-        for (int i = 0; i < body->m_nodes.size(); ++i) body->setMass(i, mass);
+        const btScalar mass = body->getTotalMass();
+        for (int i = 0; i < body->m_nodes.size(); ++i) body->setMass(i, 1);
+        body->setTotalMass(mass, /*fromfaces=*/true);  // as the mass of cloth is: by area
     }
 }
