@@ -32,6 +32,11 @@ struct SurfaceContacts {
     std::vector<RidgeContact> ridges;  ///< faces and edges over ridges; a query leaves it empty
 
     bool has(Eigen::Index i) const { return obstacle[static_cast<size_t>(i)] >= 0; }
+    /// No contacts at all, as where there are no obstacles.
+    void clear() {
+        obstacle.clear();
+        ridges.clear();
+    }
     /// Mean velocity of the surface point over the step (m/s).
     Vec3 velocity(Eigen::Index i, double dt) const { return (point1.row(i) - point0.row(i)) / dt; }
 };

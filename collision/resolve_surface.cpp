@@ -28,19 +28,13 @@ const SurfaceResolveSettings& checked(const SurfaceResolveSettings& settings) {
     return settings;
 }
 
-VectorX inverse_masses(const Garment& garment) {
-    VectorX inverse = garment.masses().cwiseInverse();
-    for (const int pin : garment.pins()) inverse[pin] = 0.0;
-    return inverse;
-}
-
 }  // namespace
 
 SurfaceResolver::SurfaceResolver(const Garment& garment, const SurfaceResolveSettings& settings)
     : m_settings(checked(settings)),
       m_samples(garment),
       m_sides(garment.vertex_count()),
-      m_push(inverse_masses(garment)),
+      m_push(garment.inverse_masses()),
       m_guard(garment, settings.growth),
       m_pinned(garment.is_pinned()),
       m_changed(m_pinned.size(), 0),

@@ -18,18 +18,12 @@ constexpr int zone_rounds = 50;         // each joins zones that touch, so they 
 constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
                                         // nothing cannot be told from elements that touch
 
-VectorX inverse_masses(const Garment& garment) {
-    VectorX inverse = garment.masses().cwiseInverse();
-    for (const int pin : garment.pins()) inverse[pin] = 0.0;
-    return inverse;
-}
-
 }  // namespace
 
 SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& settings)
     : m_settings(settings),
       m_crossings(garment),
-      m_push(inverse_masses(garment)),
+      m_push(garment.inverse_masses()),
       m_guard(garment, growth),
       m_zones(garment),
       m_rest(garment.rest().vertices),

@@ -82,6 +82,12 @@ Garment::Garment(std::string name, TriMesh rest, Fabric fabric, std::vector<int>
                                 "remove unreferenced vertices");
 }
 
+VectorX Garment::inverse_masses() const {
+    VectorX inverse = m_masses.cwiseInverse();
+    for (const int pin : m_pins) inverse[pin] = 0.0;
+    return inverse;
+}
+
 Garment Garment::with_fabric(const Fabric& fabric) const {
     return Garment(m_name, m_rest, fabric, m_pins, m_rest_angles_from_mesh);
 }

@@ -39,6 +39,7 @@ class Garment {
     bool rest_angles_from_mesh() const { return m_rest_angles_from_mesh; }    ///< else flat
     const VectorX& face_areas() const { return m_face_areas; }                ///< |F| (m^2)
     const VectorX& masses() const { return m_masses; }                        ///< |V| (kg)
+    VectorX inverse_masses() const;  ///< |V| (1/kg), 0 for pinned vertices
     Eigen::Index vertex_count() const { return m_rest.vertices.rows(); }
     Eigen::Index face_count() const { return m_rest.faces.rows(); }
     double mean_edge_length() const { return m_mean_edge_length; }  ///< at rest (m)

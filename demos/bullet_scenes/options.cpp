@@ -47,8 +47,12 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
     for (size_t i = 0; i < arguments.size(); ++i) {
         const std::string& option = arguments[i];
         if (option == "--help" || option == "-h") throw UsageError(bullet_scenes_usage());
-        if (option == "--list" || option == "--no-videos") {
-            (option == "--list" ? options.list : options.videos) = option == "--list";
+        if (option == "--list") {
+            options.list = true;
+            continue;
+        }
+        if (option == "--no-videos") {
+            options.videos = false;
             continue;
         }
         if (i + 1 == arguments.size())

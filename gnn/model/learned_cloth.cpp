@@ -9,8 +9,8 @@ std::unique_ptr<Stepper> make_learned_cloth(const Garment& garment,
                                             const LearnedClothSettings& settings) {
     auto engine = std::make_shared<Engine>(std::move(weights), settings.engine);
     auto learned = std::make_unique<LearnedStepper>(garment, std::move(engine), settings.step);
-    GuardSettings guard = settings.guard;  // its sub-steps know the layers that the step knows
-    guard.solver.potential.self_contact = settings.step.potential.self_contact;
+    GuardSettings guard = settings.guard;
+    guard.solver.potential = settings.step.potential;
     return std::make_unique<GuardedStepper>(garment, std::move(learned), guard);
 }
 

@@ -22,7 +22,8 @@ struct LearnedClothSettings {
 ///         return make_learned_cloth(garment, weights);
 ///     });
 ///
-/// Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
+/// Guarded sub-steps minimise the potential of `settings.step`, whatever `settings.guard.solver`
+/// holds. Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
 std::unique_ptr<Stepper> make_learned_cloth(const Garment& garment,
                                             std::shared_ptr<const EngineWeights> weights,
                                             const LearnedClothSettings& settings = {});

@@ -88,9 +88,9 @@ std::unique_ptr<Stepper> make_physics_cloth(const Garment& garment,
                                             const QuasiNewtonSettings& settings,
                                             const GuardSettings& guard) {
     auto stepper = std::make_unique<QuasiNewtonStepper>(garment, settings);
-    GuardSettings same_layers = guard;  // its sub-steps know the layers that the step knows
-    same_layers.solver.potential.self_contact = settings.potential.self_contact;
-    return std::make_unique<GuardedStepper>(garment, std::move(stepper), same_layers);
+    GuardSettings same_physics = guard;
+    same_physics.solver.potential = settings.potential;
+    return std::make_unique<GuardedStepper>(garment, std::move(stepper), same_physics);
 }
 
 GuardedStepper::GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> inner,

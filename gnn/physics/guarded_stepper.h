@@ -61,7 +61,8 @@ class GuardedStepper : public Stepper {
 ///         return make_physics_cloth(garment);
 ///     });
 ///
-/// Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
+/// The sub-steps minimise the potential of `settings`, whatever `guard.solver` holds. Keeps a
+/// reference to `garment`. @throws ArgumentError if a setting is out of range
 std::unique_ptr<Stepper> make_physics_cloth(
     const Garment& garment, const QuasiNewtonSettings& settings = QuasiNewtonSettings::controlled(),
     const GuardSettings& guard = {});

@@ -85,8 +85,7 @@ bool ImplicitStepper::minimise(const Boundary& boundary, const ClothState& state
 
 void ImplicitStepper::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {
     if (boundary.obstacles.empty()) {
-        m_contacts.obstacle.clear();
-        m_contacts.ridges.clear();
+        m_contacts.clear();
         return;
     }
     m_proximity.query(x, boundary, m_contacts, end);

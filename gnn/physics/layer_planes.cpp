@@ -5,9 +5,7 @@
 namespace cloth {
 
 LayerPlanes::LayerPlanes(const Garment& garment, const SelfContactSettings& settings)
-    : m_layers(garment, settings), m_inverse_masses(garment.masses().cwiseInverse()) {
-    for (const int pin : garment.pins()) m_inverse_masses[pin] = 0.0;
-}
+    : m_layers(garment, settings), m_inverse_masses(garment.inverse_masses()) {}
 
 void LayerPlanes::project(PaddedPoints& x) const {
     for (const SelfContactEnergy::Pair& pair : m_layers.pairs()) {

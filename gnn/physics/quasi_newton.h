@@ -11,6 +11,10 @@ struct QuasiNewtonSettings {
         10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
     int least_iterations = 0;  ///< but not before these, 0 to 10000
+    int history = 8;  ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
+    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
+                                     ///< contact stays out of the matrix
+    PotentialSettings potential;     ///< for steppers, which make the potential themselves
 
     /// What a simulation should use: ten iterations as a rule, and up to a hundred in frames whose
     /// residual stays above 3 (cloth that is let go, a fabric of 5 kN/m). Ordinary frames of soft
@@ -22,10 +26,6 @@ struct QuasiNewtonSettings {
         settings.tolerance = 3.0;
         return settings;
     }
-    int history = 8;  ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
-    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
-                                     ///< contact stays out of the matrix
-    PotentialSettings potential;     ///< for steppers, which make the potential themselves
 };
 
 /// What one minimisation reached.

@@ -86,8 +86,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
 
 void QuasiNewtonStepper::find_contacts(const Boundary& boundary, const ClothState& state) {
     if (boundary.obstacles.empty()) {
-        m_contacts.obstacle.clear();
-        m_contacts.ridges.clear();
+        m_contacts.clear();
         return;
     }
     m_proximity.query(state.x, boundary, m_contacts);

@@ -19,8 +19,7 @@ SelfContactEnergy::SelfContactEnergy(const Garment& garment, const SelfContactSe
     check_self_contact(settings);
     if (!settings.on()) return;
     m_proximity.emplace(garment, settings.thickness);
-    m_inverse_masses = garment.masses().cwiseInverse();
-    for (const int pin : garment.pins()) m_inverse_masses[pin] = 0.0;
+    m_inverse_masses = garment.inverse_masses();
     m_area = garment.masses() / garment.masses().mean();
     m_vertex_pairs.assign(static_cast<size_t>(garment.vertex_count()), 0);
     m_edge_pairs.assign(garment.edges().size(), 0);

@@ -1,22 +1,15 @@
 #include "gnn/physics/time_integration.h"
 
-#include <cstring>
-
 namespace cloth {
 namespace {
 
 constexpr double bdf2_weight = 2.25;
 
-bool same_bits(const Points& a, const Points& b) {
-    return a.rows() == b.rows() &&
-           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0;
-}
-
 }  // namespace
 
 bool TimeIntegration::continues(const ClothState& state, double dt) const {
-    return m_kind == Integrator::bdf2 && dt == m_dt && same_bits(state.x, m_x) &&
-           same_bits(state.v, m_v);
+    return m_kind == Integrator::bdf2 && dt == m_dt && same_points(state.x, m_x) &&
+           same_points(state.v, m_v);
 }
 
 const InertialStep* TimeIntegration::begin_step(const ClothState& state,

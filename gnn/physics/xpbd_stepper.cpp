@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string>
 
@@ -46,26 +45,14 @@ const XpbdSettings& checked(const XpbdSettings& settings) {
     return settings;
 }
 
-/// 1 / mass (1/kg), 0 for pinned vertices.
-VectorX inverse_masses(const Garment& garment) {
-    VectorX inverse = garment.masses().cwiseInverse();
-    for (const int pin : garment.pins()) inverse[pin] = 0.0;
-    return inverse;
-}
-
-bool same_bits(const Points& a, const Points& b) {
-    return a.rows() == b.rows() &&
-           std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<size_t>(a.size())) == 0;
-}
-
 }  // namespace
 
 XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
                          const ProximitySettings& proximity)
     : m_garment(&garment),
       m_settings(checked(settings)),
-      m_stretch(stretch_springs(garment), inverse_masses(garment), settings.relaxation),
-      m_bending(bending_springs(garment, settings.bending_angle), inverse_masses(garment),
+      m_stretch(stretch_springs(garment), garment.inverse_masses(), settings.relaxation),
+      m_bending(bending_springs(garment, settings.bending_angle), garment.inverse_masses(),
                 settings.relaxation),
       m_proximity(proximity),
       m_resolver(garment),
@@ -111,7 +98,7 @@ bool XpbdStepper::finish(double dt, ClothState& state) {
 
 void XpbdStepper::find_contacts(const Boundary& boundary, const ClothState& state) {
     if (boundary.obstacles.empty())
-        m_contacts.obstacle.clear();
+        m_contacts.clear();
     else
         m_proximity.query(state.x, boundary, m_contacts);
 }
@@ -126,7 +113,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_layers.begin_step(state, dt);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;
-    if (same_bits(state.x, m_last_x))
+    if (same_points(state.x, m_last_x))
         m_w.leftCols<3>() += m_lag;
     else
         estimate_lag(boundary, dt, state);

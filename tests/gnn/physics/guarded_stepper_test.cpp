@@ -128,6 +128,25 @@ TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
     EXPECT_EQ(m_state.x, before.x);
 }
 
+TEST_F(Guard, SubstepsObeyThePhysicsOfTheStep) {
+    m_boundary.obstacles = {ball(-0.15, 0.25)};
+    const auto after = [&](double contact_distance) {
+        QuasiNewtonSettings settings = QuasiNewtonSettings::controlled();
+        settings.potential.contact_distance = contact_distance;
+        ClothState state = m_state;
+        EXPECT_TRUE(make_physics_cloth(m_garment, settings)->step(m_boundary, dt, state).finite);
+        return state.x;
+    };
+    GuardSettings by_hand;
+    by_hand.solver.potential.contact_distance = 8e-3;
+    ClothState state = m_state;
+    GuardedStepper guard(m_garment, quasi_newton(m_garment), by_hand);
+    guard.step(m_boundary, dt, state);
+    ASSERT_GT(guard.last_substeps(), 1);
+    EXPECT_TRUE(same_points(after(8e-3), state.x));
+    EXPECT_FALSE(same_points(after(4e-3), state.x));
+}
+
 TEST_F(Guard, RefusesSettingsOutOfRange) {
     GuardSettings settings;
     settings.max_motion = 0.0;
