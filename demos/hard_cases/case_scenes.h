@@ -40,5 +40,6 @@ HardSceneParts swing(const TriMesh& level, const SwingSettings& settings);
 // long runs: soak_scenes.cpp
 HardSceneParts soak_rest();
 HardSceneParts soak_loop();
+HardSceneParts soak_motion();  // motion_cases.cpp
 
 }  // namespace cloth

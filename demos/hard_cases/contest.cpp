@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-constexpr double reference_budget = 120000.0;  // vertices times frames that Newton is run for
+constexpr double reference_budget = 350000.0;  // vertices times frames that Newton is run for
 
 bool too_dear(const std::string& stepper, const HardScene& scene) {
     const auto vertices = static_cast<double>(scene.garment().vertex_count());

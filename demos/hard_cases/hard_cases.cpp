@@ -199,6 +199,11 @@ const std::vector<HardCase>& hard_cases() {
          {1.22, none, 1.0, none, 3.0,
           "reference 1.11 and 1.6 m/s in the first swing: a swing of 0.6 m brings no more"},
          soak_loop},
+        {"soak-motion",
+         "a T-shirt on a body that jumps to and fro for ever",
+         300,
+         {1.3, none, 1.0, none, none, "reference 1.18"},
+         soak_motion},
     };
     return cases;
 }

@@ -31,6 +31,9 @@ struct HardCase {
     int frames;            ///< of the case's time step, until it has happened
     Bounds bounds;
     std::function<HardSceneParts()> parts;
+    /// If not 0: the bound of stretch is so many times what the reference has in its worst frame,
+    /// where the reference was run.
+    double stretch_of_reference = 0.0;
 };
 
 /// All cases, in the order in which they are run.

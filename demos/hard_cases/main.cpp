@@ -5,6 +5,7 @@
 
 #include "demos/compare/progress.h"
 #include "demos/hard_cases/contest.h"
+#include "demos/hard_cases/motion_cases.h"
 #include "demos/hard_cases/options.h"
 #include "demos/hard_cases/report.h"
 
@@ -19,6 +20,14 @@ void list_cases() {
         std::printf("%-20s %s\n", hard.name.c_str(), hard.sentence.c_str());
 }
 
+/// The case with the bound of stretch that the reference's row sets, if there is one.
+HardCase bounded(HardCase hard, const HardReport& report, int frames) {
+    const HardRow* reference = report.find(hard.name, "reference", frames);
+    if (hard.stretch_of_reference > 0.0 && reference && reference->held)
+        hard.bounds.stretch_p99 = hard.stretch_of_reference * reference->stretch_p99;
+    return hard;
+}
+
 /// All steppers on one case; those with a row already are left out.
 void run_case(const HardCaseOptions& options, const HardContest& contest, HardReport& report,
               Progress& line) {
@@ -29,8 +38,9 @@ void run_case(const HardCaseOptions& options, const HardContest& contest, HardRe
     const HardScene scene(contest.hard->parts(), contest.frames);
     std::vector<HardStrip> strips;
     for (const std::string& stepper : left) {
+        const HardCase hard = bounded(*contest.hard, report, contest.frames);
         const HardResult result = run_stepper(
-            contest, scene, stepper,
+            {&hard, contest.frames, {}, contest.solver}, scene, stepper,
             [&](int done, int all, const std::string& what) { line.update(done, all, what); });
         report.add(result.row);
         strips.push_back(result.strip);
@@ -49,12 +59,14 @@ void run(const HardCaseOptions& options) {
     std::filesystem::create_directories(options.out);
     HardReport report(options.out + "/hard_cases.json", options.resume);
     Progress line;
-    for (const std::string& name : options.cases) {
-        const HardCase& hard = hard_case(name);
+    const auto run_one = [&](const HardCase& hard) {
         const int frames =
             scaled_frames(hard, options.frames_scale, options.soak ? soak_frames : 0);
         run_case(options, {&hard, frames, options.steppers, solver}, report, line);
-    }
+    };
+    for (const std::string& name : options.cases) run_one(hard_case(name));
+    for (const std::string& motion : with_folders_listed(options.motions))
+        run_one(motion_case(motion, options.garment));
     for (const HardRow& row : report.rows()) std::printf("%s\n", text_line(row).c_str());
     if (options.markdown) std::printf("\n%s", markdown(report.rows()).c_str());
     std::printf("%s/hard_cases.json\n", options.out.c_str());

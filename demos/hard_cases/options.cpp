@@ -11,6 +11,11 @@ std::string hard_cases_usage() {
     return "hard_cases: scenes on which cloth solvers fail, with every solver\n"
            "  --list               name the cases\n"
            "  --cases A,B,...      only these\n"
+           "  --motions A,B,...    a garment on a body through these whole motions instead: "
+           "names,\n"
+           "                       BVH files or folders of them. Stretch may be 1.1 times that of\n"
+           "                       the reference, if it is named first in --steppers\n"
+           "  --garment NAME       for --motions: tshirt_1000 (default), tshirt_2000, tshirt\n"
            "  --steppers A,B,...   reference, newton-K, quasi-newton-K, quasi-newton-KxS, xpbd-N,\n"
            "                       bullet, bullet-fine, bullet-KxS, or a network NAME[+K]\n"
            "  --frames-scale S     runs S times the frames of each case (default 1); the bounds "
@@ -71,6 +76,10 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
         const std::string& value = arguments[++i];
         if (option == "--cases")
             options.cases = split_list(value);
+        else if (option == "--motions")
+            options.motions = split_list(value);
+        else if (option == "--garment")
+            options.garment = value;
         else if (option == "--steppers")
             options.steppers = split_list(value);
         else if (option == "--frames-scale")
@@ -85,7 +94,7 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
             throw UsageError("unknown option " + option + "; see --help");
     }
     options.pictures = !no_pictures;
-    if (options.cases.empty())
+    if (options.cases.empty() && options.motions.empty())
         for (const HardCase& hard : hard_cases()) options.cases.push_back(hard.name);
     for (const std::string& name : options.cases) hard_case(name);
     if (options.steppers.empty()) throw UsageError("--steppers: name at least one; see --help");

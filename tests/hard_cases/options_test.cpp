@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
 #include <set>
 
+#include "data/errors.h"
 #include "demos/compare/arguments.h"
 #include "demos/hard_cases/contest.h"
+#include "demos/hard_cases/motion_cases.h"
 
 using namespace cloth;
 
@@ -39,6 +43,35 @@ TEST(HardCaseOptions, AreRead) {
     EXPECT_TRUE(options.soak && options.markdown && options.resume && !options.pictures);
     EXPECT_EQ(options.threads, 2);
     EXPECT_EQ(options.out, "there");
+}
+
+TEST(HardCaseOptions, MotionsTakeThePlaceOfTheCases) {
+    const HardCaseOptions options =
+        parse_hard_case_options({"--motions", "01_01,01_03", "--garment", "tshirt"});
+    EXPECT_EQ(options.motions, (std::vector<std::string>{"01_01", "01_03"}));
+    EXPECT_EQ(options.garment, "tshirt");
+    EXPECT_TRUE(options.cases.empty());
+}
+
+TEST(HardCaseOptions, FoldersOfMotionsAreListed) {
+    const std::filesystem::path folder =
+        std::filesystem::path(testing::TempDir()) / "hard_cases_motions";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    EXPECT_THROW(with_folders_listed({folder.string()}), LoadError);
+    for (const char* name : {"b.bvh", "a.bvh", "c.txt"}) std::ofstream(folder / name) << "x";
+    EXPECT_EQ(with_folders_listed({"01_01", folder.string()}),
+              (std::vector<std::string>{"01_01", folder / "a.bvh", folder / "b.bvh"}));
+    std::filesystem::remove_all(folder);
+}
+
+TEST(HardCaseOptions, AMotionThatIsNotThereIsRefusedByName) {
+    try {
+        motion_case("moonwalk", "tshirt_1000");
+        FAIL();
+    } catch (const LoadError& error) {
+        EXPECT_NE(std::string(error.what()).find("moonwalk"), std::string::npos);
+    }
 }
 
 TEST(HardCaseOptions, AnUnknownCaseIsRefusedWithTheCasesThereAre) {

@@ -8,6 +8,7 @@
 #include "collision/proximity.h"
 #include "data/mesh_quality.h"
 #include "demos/hard_cases/hard_cases.h"
+#include "demos/hard_cases/motion_cases.h"
 #include "demos/hard_cases/odd_meshes.h"
 #include "demos/hard_cases/pictures.h"
 
@@ -53,6 +54,19 @@ TEST(HardScenes, BeginOutsideAndKeepPinsAndSurfacesContinuous) {
             }
         }
     }
+}
+
+TEST(HardScenes, AMotionIsPlayedFromTheRestPoseToItsEnd) {
+    const HardCase hard = motion_case("01_01", "tshirt_1000");
+    const HardSceneParts parts = hard.parts();
+    const Points first = parts.outside(0.0, 1.0 / 30.0).obstacles[0].x0;
+    const double end = hard.frames / 30.0;
+    const Points last = parts.outside(end - 1.0 / 30.0, end).obstacles[0].x1;
+    const Points beyond = parts.outside(end, end + 1.0).obstacles[0].x1;
+    EXPECT_GT((last - first).rowwise().norm().maxCoeff(), 0.5);
+    EXPECT_LT((beyond - last).rowwise().norm().maxCoeff(), 0.1);
+    EXPECT_EQ(hard.name, "motion-01_01");
+    EXPECT_GT(hard.stretch_of_reference, 1.0);
 }
 
 TEST(HardScenes, DressHas12000Vertices) {
