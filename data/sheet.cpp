@@ -87,7 +87,8 @@ std::vector<Vec2> border_points(double width, double depth, double h) {
     const int rows = std::max(1, static_cast<int>(std::lround(depth / h)));
     std::vector<Vec2> points;
     for (int i = 0; i <= columns; ++i)
-        for (double z : {0.0, depth}) points.emplace_back(width * i / columns, z);
+        for (double z : {0.0, depth})  // the last in one line with its side, to the last bit
+            points.emplace_back(i == columns ? width : width * i / columns, z);
     for (int j = 1; j < rows; ++j)
         for (double x : {0.0, width}) points.emplace_back(x, depth * j / rows);
     return points;
