@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/proximity.h"
 #include "data/mesh_io.h"
 #include "data/paths.h"
 #include "demos/compare/arguments.h"
@@ -30,6 +31,7 @@ BodyScene::BodyScene(const BodySceneSettings& settings) : ComparisonScene(load_g
     const int frames = settings.frames == 0 ? available : std::min(settings.frames, available);
     const int references = settings.reference_frames == 0 ? frames : settings.reference_frames;
     set_length(frames, std::min(references, frames));
+    find_covered_skin();
 }
 
 Boundary BodyScene::boundary(double t0, double t1) const {
@@ -48,11 +50,30 @@ std::vector<BodySegment> BodyScene::segments() const {
     return segment_body(body.rest_mesh(), body.dominant_joint());
 }
 
+void BodyScene::find_covered_skin() {
+    Proximity proximity;
+    SurfaceContacts contacts;
+    const Points& rest = garment().rest().vertices;
+    Boundary boundary;
+    boundary.obstacles.push_back(m_body->obstacle(0.0, 0.0));
+    proximity.query(rest, boundary, contacts);
+    const Faces& faces = *m_body->faces();
+    for (Eigen::Index i = 0; i < rest.rows(); ++i)
+        if (contacts.has(i)) m_covered.push_back(faces(contacts.face[static_cast<size_t>(i)], 0));
+    m_rest_offset = rest.colwise().mean().transpose() -
+                    middle_of_covered(boundary.obstacles[0].x0);
+}
+
+Vec3 BodyScene::middle_of_covered(const Points& skin) const {
+    Vec3 sum = Vec3::Zero();
+    for (const int vertex : m_covered) sum += skin.row(vertex).transpose();
+    return sum / std::max(1.0, static_cast<double>(m_covered.size()));
+}
+
 std::string BodyScene::loss(const Boundary& boundary, const Points& x) const {
-    const double height = x.col(1).mean() - garment().rest().vertices.col(1).mean();
-    const double body_height =
-        boundary.obstacles[0].x1.col(1).mean() - m_body->body().rest().col(1).mean();
-    return std::abs(height - body_height) > 0.4 ? "slid off the body" : "";
+    const Vec3 offset =
+        x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x1);
+    return (offset - m_rest_offset).norm() > 0.3 ? "slid off the body" : "";
 }
 
 }  // namespace cloth

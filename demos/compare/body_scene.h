@@ -32,11 +32,18 @@ class BodyScene : public ComparisonScene {
     Boundary boundary(double t0, double t1) const override;
     int lead_in_frames() const override { return m_lead_in_frames; }
     std::vector<BodySegment> segments() const override;
+    /// "slid off the body": the garment's middle is 0.3 m from the middle of the skin that it
+    /// covers at rest, however the body bends.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
+    void find_covered_skin();
+    Vec3 middle_of_covered(const Points& skin) const;
+
     std::unique_ptr<AnimatedBody> m_body;
     int m_lead_in_frames = 30;
+    std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest
+    Vec3 m_rest_offset;          ///< from their middle to the garment's, at rest (m)
 };
 
 /// "soft": SNUG's cotton, 33 N/m; "real": cotton as measured, 5 kN/m.
