@@ -41,8 +41,10 @@ std::vector<SceneResult> run_rate(const BulletScenesOptions& options, const Scen
     std::vector<SceneResult> results;
     for (const std::string& solver : options.solvers) {
         SceneResult result = run(solver);
-        if (compare && result.row.finite)
+        if (compare && result.row.finite) {
             result.row.rest_error_mm = shape_distance_mm(result.last, reference.last);
+            result.row.rest_energy_mm = energy_distance_mm(result.energy, reference.energy);
+        }
         result.row.momentum_error = momentum_error(recipe, settings, solvers);
         std::printf("%s\n", scene_row_text(result.row).c_str());
         for (const std::string& message : result.messages) std::printf("  %s\n", message.c_str());

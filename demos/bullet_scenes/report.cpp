@@ -26,6 +26,8 @@ nlohmann::ordered_json scene_row_json(const SceneRow& row) {
             {"rate_hz", row.rate_hz},
             {"finite", row.finite},
             {"rest_error_mm", json_number(row.rest_error_mm)},
+            {"rest_energy_mm", json_number(row.rest_energy_mm)},
+            {"speed_end_mm_s", json_number(row.speed_end_mm_s)},
             {"momentum_error", json_number(row.momentum_error)},
             {"penetration_max_mm", json_number(row.penetration_max_mm)},
             {"ms_median", json_number(row.ms_median)},
@@ -33,16 +35,18 @@ nlohmann::ordered_json scene_row_json(const SceneRow& row) {
 }
 
 std::string scene_row_heading() {
-    return "scene      solver             rate  finite  rest (mm)  momentum  inside (mm)  "
-           "ms/step  last second";
+    return "scene      solver             rate  finite  rest (mm)  energy (mm)  mm/s at end  "
+           "momentum  "
+           "inside (mm)  ms/step  last second";
 }
 
 std::string scene_row_text(const SceneRow& row) {
     char text[200];
     std::snprintf(
-        text, sizeof text, "%-10s %-18s %4d  %-6s  %9s  %8s  %11s  %7s  %11s", row.scene.c_str(),
-        row.solver.c_str(), row.rate_hz, row.finite ? "yes" : "NO",
-        number(row.rest_error_mm, "%.1f").c_str(), number(row.momentum_error, "%.4f").c_str(),
+        text, sizeof text, "%-10s %-18s %4d  %-6s  %9s  %11s  %11s  %8s  %11s  %7s  %11s",
+        row.scene.c_str(), row.solver.c_str(), row.rate_hz, row.finite ? "yes" : "NO",
+        number(row.rest_error_mm, "%.1f").c_str(), number(row.rest_energy_mm, "%.2f").c_str(),
+        number(row.speed_end_mm_s, "%.2f").c_str(), number(row.momentum_error, "%.4f").c_str(),
         number(row.penetration_max_mm, "%.1f").c_str(), number(row.ms_median, "%.2f").c_str(),
         number(row.ms_median_last_second, "%.2f").c_str());
     return text;

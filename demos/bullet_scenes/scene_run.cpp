@@ -39,13 +39,14 @@ SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& setting
     SceneWorld scene(solver.get());
     recipe.build(scene);
     SceneProbe probe(scene);
+    const SceneEnergyMeter energy(scene);
     SceneResult result;
     SceneRow& row = result.row;
     row.scene = recipe.name;
     row.solver = settings.solver;
     row.rate_hz = settings.rate;
     row.finite = true;
-    row.rest_error_mm = row.momentum_error = kNan;
+    row.rest_error_mm = row.rest_energy_mm = row.momentum_error = kNan;
     const int steps = static_cast<int>(std::lround(settings.seconds * settings.rate));
     const btScalar h = 1 / static_cast<btScalar>(settings.rate);
     std::vector<double> times;
@@ -65,6 +66,8 @@ SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& setting
     row.ms_median = median_of_windows(times, 0, settings.rate);
     row.ms_median_last_second = median_of_windows(times, times.size() - last, settings.rate);
     result.last = probe.cloth();
+    result.energy = energy.now();
+    row.speed_end_mm_s = 1e3 * std::sqrt(2.0 * result.energy.kinetic);
     if (solver)
         for (const btGnnSolverMessage& message : solver->status().messages)
             result.messages.push_back(message.text);
@@ -79,6 +82,11 @@ double shape_distance_mm(const std::vector<Points>& a, const std::vector<Points>
         count += static_cast<double>(a[k].rows());
     }
     return count > 0.0 ? 1e3 * std::sqrt(sum / count) : kNan;
+}
+
+double energy_distance_mm(const SceneEnergy& a, const SceneEnergy& b) {
+    constexpr double kGravity = 9.81;  // m/s^2, of all scenes
+    return 1e3 * (a.potential - b.potential) / kGravity;
 }
 
 double momentum_error(const SceneRecipe& recipe, const SceneRunSettings& settings,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "data/mesh.h"
+#include "demos/bullet_scenes/scene_energy.h"
 #include "demos/bullet_scenes/scene_solver.h"
 #include "demos/bullet_scenes/worlds/scenes.h"
 
@@ -30,6 +31,9 @@ struct SceneRow {
     int rate_hz = 0;
     bool finite = false;              ///< all nodes and bodies, to the end
     double rest_error_mm = 0.0;       ///< RMS distance of the last shape to the reference's
+    double rest_energy_mm = 0.0;      ///< the last shape's stretch, bending and gravity energy over
+                                      ///< the cloth's weight, less the reference's
+    double speed_end_mm_s = 0.0;      ///< RMS speed of the cloth after the last step
     double momentum_error = 0.0;      ///< of the closed twin: |p(t) - p(0)| / |p(0)| at its end
     double penetration_max_mm = 0.0;  ///< deepest cloth node inside a rigid body, all steps
     double ms_median = 0.0;  ///< wall time of a stepSimulation(), mean of each 1/30 s: steps
@@ -40,18 +44,23 @@ struct SceneRow {
 struct SceneResult {
     SceneRow row;
     std::vector<Points> last;  ///< of each cloth (|V| x 3, m)
+    SceneEnergy energy;        ///< then
     std::vector<ScenePicture> pictures;
     std::vector<std::string> messages;  ///< of our solver
 };
 
 using SceneProgress = std::function<void(int done, int all)>;
 
-/// Runs the scene for its time; the rest error is left NaN.
+/// Runs the scene for its time; what needs a reference is left NaN.
 SceneResult run_scene(const SceneRecipe& recipe, const SceneRunSettings& settings,
                       const SceneSolvers& solvers, const SceneProgress& progress = {});
 
 /// RMS distance between two last shapes (mm); NaN if their sizes differ or there is none.
 double shape_distance_mm(const std::vector<Points>& a, const std::vector<Points>& b);
+
+/// How much more energy the cloth has in `a` than in `b`, over its weight: the height (mm) that its
+/// weight would have to be lifted by.
+double energy_distance_mm(const SceneEnergy& a, const SceneEnergy& b);
 
 /// Runs the scene's closed twin for a second: how much of the momentum was lost or made, relative
 /// to what there was. NaN if the scene has none.

@@ -60,9 +60,11 @@ TEST(BulletScenes, RowsAreJsonWithNullsForWhatHasNoMeaning) {
     row.solver = "fast";
     row.rate_hz = 60;
     row.rest_error_mm = row.momentum_error = std::numeric_limits<double>::quiet_NaN();
+    row.rest_energy_mm = row.rest_error_mm;
     row.ms_median = 1.5;
     const nlohmann::ordered_json json = scene_row_json(row);
     EXPECT_TRUE(json.at("rest_error_mm").is_null());
+    EXPECT_TRUE(json.at("rest_energy_mm").is_null());
     EXPECT_TRUE(json.at("momentum_error").is_null());
     EXPECT_EQ(json.at("ms_median"), 1.5);
     EXPECT_EQ(json.at("rate_hz"), 60);

@@ -4,68 +4,129 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <map>
+
 #include "demos/bullet_scenes/scene_run.h"
 
 using namespace cloth;
 
 namespace {
 
-// The network is not the point here, and three iterations are what a test can afford.
-constexpr char kOurs[] = "quasi-newton-3";
+constexpr double kSeconds = 10.0;
 
-class Swap : public testing::TestWithParam<SceneRecipe> {
- protected:
-    Swap() { omp_set_num_threads(1); }  // small sheets; other tests run beside this one
+// What is right: as many iterations as it takes.
+constexpr char kReference[] = "quasi-newton-30";
+
+/// How far the end of a scene that comes to rest may be from the reference's.
+struct RestBounds {
+    double shape_mm;    ///< RMS distance of the nodes
+    double energy_mm;   ///< difference of stretch, bending and gravity energy, over the weight
+    double kinetic_mm;  ///< kinetic energy, over the weight; 0.05: all nodes move at 31 mm/s
 };
 
-std::string name_of(const testing::TestParamInfo<SceneRecipe>& info) {
+// Hanging cloth has one rest shape, and its energy is the least there is; but it swings for
+// longer than 10 s, as Bullet's does, and its soft creases yield slowly.
+// Where friction holds the cloth, all shapes within the cone are at rest: which of them it is
+// depends on how it fell. With 60 iterations instead of 30 the sheet over the edge of the box ends
+// 8 mm and the one on the sphere, which falls in free folds, 26 mm elsewhere, 5 mm and 1 mm lower
+// or higher. The bounds are about three times the spread of 1 to 60 iterations. Bullet's own sheet
+// slides off the box, half a metre down, and lies 25 mm higher on the sphere.
+const std::map<std::string, RestBounds> kRestBounds = {
+    {"hanging", {60, 1, 0.5}},    {"attached", {60, 1, 0.5}}, {"sphere", {120, 20, 0.05}},
+    {"box_edge", {30, 16, 0.05}}, {"capsule", {30, 3, 0.05}}, {"mesh", {35, 3, 0.05}}};
+
+struct SwapCase {
+    std::string solver;
+    SceneRecipe recipe;
+    double most_momentum;  ///< lost by the closed twin in a second
+};
+
+/// Three iterations conserve momentum as well as many do, by construction. The network does not
+/// while it flies free, and loses 0.3 %.
+std::vector<SwapCase> swap_cases() {
+    std::vector<SwapCase> cases;
+    for (const SceneRecipe& recipe : sceneRecipes()) {
+        cases.push_back({"quasi-newton-3", recipe, 0.001});
+        cases.push_back({"small", recipe, 0.01});
+    }
+    return cases;
+}
+
+std::string name_of(const testing::TestParamInfo<SwapCase>& info) {
+    const std::string solver = info.param.solver == "small" ? "small" : "quasi_newton";
+    return std::string(info.param.recipe.name) + "_" + solver;
+}
+
+std::string scene_name_of(const testing::TestParamInfo<SceneRecipe>& info) {
     return info.param.name;
 }
 
-SceneRunSettings settings_of(const std::string& solver, double seconds) {
+SceneRunSettings settings_of(const std::string& solver, double seconds = kSeconds) {
     SceneRunSettings settings;
     settings.solver = solver;
     settings.seconds = seconds;
     return settings;
 }
 
+SceneResult run(const SceneRecipe& recipe, const std::string& solver, double seconds = kSeconds) {
+    omp_set_num_threads(1);  // small sheets; other tests run beside this one
+    return run_scene(recipe, settings_of(solver, seconds), SceneSolvers());
+}
+
+const SceneResult& reference_of(const SceneRecipe& recipe) {
+    static std::map<std::string, SceneResult> results;
+    auto it = results.find(recipe.name);
+    if (it == results.end()) it = results.emplace(recipe.name, run(recipe, kReference)).first;
+    return it->second;
+}
+
+void expect_rest(const SceneRecipe& recipe, const SceneResult& result) {
+    const RestBounds& bounds = kRestBounds.at(recipe.name);
+    const SceneResult& reference = reference_of(recipe);
+    const SceneEnergy still{0.0, 0.0}, moving{0.0, result.energy.kinetic};
+    EXPECT_LT(energy_distance_mm(moving, still), bounds.kinetic_mm);
+    EXPECT_LT(std::abs(energy_distance_mm(result.energy, reference.energy)), bounds.energy_mm);
+    EXPECT_LT(shape_distance_mm(result.last, reference.last), bounds.shape_mm);
+}
+
+class Swap : public testing::TestWithParam<SwapCase> {};
+class BulletsOwn : public testing::TestWithParam<SceneRecipe> {};
+
 }  // namespace
 
-// No node deeper than 1 mm at any step, and 0.1 % of the momentum in a second of the closed twin:
-// what an eye does not see. Bullet's own cloth is 60 mm deep in some of these scenes.
-TEST_P(Swap, OursIsFiniteForTenSecondsAndHoldsItsBounds) {
-    const SceneRecipe& recipe = GetParam();
-    const SceneSolvers solvers;
-    const SceneResult result = run_scene(recipe, settings_of(kOurs, 10.0), solvers);
-    EXPECT_TRUE(result.row.finite);
+// No node deeper than 1 mm at any step: what an eye does not see. Bullet's own cloth is 60 mm deep
+// in some of these scenes.
+TEST_P(Swap, OursHoldsItsBoundsForTenSeconds) {
+    const auto& [solver, recipe, most_momentum] = GetParam();
+    const SceneResult result = run(recipe, solver);
+    ASSERT_TRUE(result.row.finite);
     EXPECT_LT(result.row.penetration_max_mm, 1.0);
     for (const std::string& message : result.messages) ADD_FAILURE() << message;
+    if (recipe.comes_to_rest) expect_rest(recipe, result);
     if (recipe.launch) {
-        EXPECT_LT(momentum_error(recipe, settings_of(kOurs, 10.0), solvers), 0.001);
+        EXPECT_LT(momentum_error(recipe, settings_of(solver), SceneSolvers()), most_momentum);
     }
 }
 
-TEST_P(Swap, BulletsIsFiniteToo) {
-    const SceneRecipe& recipe = GetParam();
-    // Bullet needs 0.2 s per step for cloth on triangles.
-    const double seconds = std::string(recipe.name) == "mesh" ? 0.5 : 10.0;
-    EXPECT_TRUE(run_scene(recipe, settings_of("bullet", seconds), SceneSolvers()).row.finite);
+INSTANTIATE_TEST_SUITE_P(Scenes, Swap, testing::ValuesIn(swap_cases()), name_of);
+
+TEST_P(BulletsOwn, IsFiniteToo) {
+    // Bullet needs 0.1 s per step for cloth on triangles.
+    const double seconds = std::string(GetParam().name) == "mesh" ? 0.5 : kSeconds;
+    EXPECT_TRUE(run(GetParam(), "bullet", seconds).row.finite);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Swap, testing::ValuesIn(sceneRecipes()), name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, BulletsOwn, testing::ValuesIn(sceneRecipes()), scene_name_of);
 
-TEST(SwapShapes, HangingAndLyingSheetsComeToTheShapeOfTheReferenceAndOfBullet) {
-    omp_set_num_threads(1);
-    const SceneSolvers solvers;
+// Only these: on the sphere Bullet's folds are others, its sheet on the box slides off. Soft cotton
+// stretches by 3 % of its height under its weight, Bullet's links hardly do.
+TEST(SwapShapes, HangingAndDrapedSheetsComeToBulletsShape) {
     for (const SceneRecipe& recipe : sceneRecipes()) {
         const std::string name = recipe.name;
-        if (name != "hanging" && name != "attached") continue;
-        const auto last = [&](const std::string& solver) {
-            return run_scene(recipe, settings_of(solver, 10.0), solvers).last;
-        };
-        const std::vector<Points> ours = last(kOurs), right = last("quasi-newton-30");
-        // Soft cotton stretches by 3 % of its height under its weight, Bullet's links hardly do.
-        EXPECT_LT(shape_distance_mm(ours, right), 40.0) << name;
-        EXPECT_LT(shape_distance_mm(ours, last("bullet")), 60.0) << name;
+        if (name != "hanging" && name != "attached" && name != "capsule") continue;
+        const std::vector<Points> bullets = run(recipe, "bullet").last;
+        for (const char* solver : {"quasi-newton-3", "small"})
+            EXPECT_LT(shape_distance_mm(run(recipe, solver).last, bullets), 60.0)
+                << name << " " << solver;
     }
 }
