@@ -1,5 +1,8 @@
 #include "bullet_ext/btGnnSoftBodySolver.h"
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
+#include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,13 +16,48 @@ using cloth::Garment;
 
 namespace {
 
+/// setTotalMass(0) makes infinite ones.
+bool hasFiniteMasses(const btSoftBody& body) {
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!std::isfinite(body.m_nodes[i].m_im)) return false;
+    return true;
+}
+
 bool hasFiniteNodes(const btSoftBody& body) {
     for (int i = 0; i < body.m_nodes.size(); ++i)
         if (!cloth::toVec3(body.m_nodes[i].m_x).allFinite() ||
-            !cloth::toVec3(body.m_nodes[i].m_v).allFinite() ||
-            !std::isfinite(body.m_nodes[i].m_im))  // setTotalMass(0) makes it infinite
+            !cloth::toVec3(body.m_nodes[i].m_v).allFinite())
             return false;
+    return hasFiniteMasses(body);
+}
+
+bool isFinite(const btVector3& low, const btVector3& high) {
+    return cloth::toVec3(low).allFinite() && cloth::toVec3(high).allFinite();
+}
+
+bool isFinite(const btTransform& pose) {
+    return cloth::toVec3(pose.getOrigin()).allFinite() &&
+           cloth::toMatrix(pose.getBasis()).allFinite();
+}
+
+/// Bullet's distance field numbers its cells with ints, unchecked.
+bool fitsDistanceField(const btSoftBody& body) {
+    constexpr double kFarthest = 1e7;  // m
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        if (!(cloth::toVec3(body.m_nodes[i].m_x).cwiseAbs().maxCoeff() < kFarthest)) return false;
     return true;
+}
+
+/// Bounds that are not finite spoil Bullet's broadphase for everybody, its tree loses what is
+/// beside them; and Bullet disables the body for good.
+void mendBounds(btSoftBody& body) {
+    btBroadphaseProxy* proxy = body.getBroadphaseHandle();
+    const bool spoilt = proxy && !isFinite(proxy->m_aabbMin, proxy->m_aabbMax);
+    if (!spoilt && isFinite(body.m_bounds[0], body.m_bounds[1])) return;
+    const btVector3 zero(0, 0, 0);
+    body.m_bounds[0] = body.m_bounds[1] = zero;
+    if (proxy && body.m_worldInfo->m_broadphase)
+        body.m_worldInfo->m_broadphase->setAabb(proxy, zero, zero, body.m_worldInfo->m_dispatcher);
 }
 
 Garment scaledGarment(const Garment& garment, double factor) {
@@ -146,17 +184,24 @@ void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
     followScale(body, entry);
 }
 
-/// New pins or another size: the same rest shape in a new garment.
+/// New pins or another size: the same rest shape in a new garment. Masses that are not finite
+/// freeze the body, which has its rest shape again when they are mended.
 void btGnnSoftBodySolver::followScale(btSoftBody& body, Entry& entry) {
     const double length = cloth::meanLinkLength(body);
     const double factor = entry.linkLength > 0.0 ? length / entry.linkLength : 1.0;
     const bool scaled = std::abs(factor - 1.0) > 0.1;
     std::vector<int> pins = cloth::pinnedNodes(body);
     const Garment& old = entry.step->garment();
-    if (!scaled && pins == old.pins()) return;
-    entry.given = std::make_shared<const Garment>(
-        (scaled ? scaledGarment(old, factor) : old).with_pins(std::move(pins)));
-    tryBuild(body, entry);
+    if (!scaled && pins == old.pins() && hasFiniteMasses(body)) return;
+    try {
+        entry.given = std::make_shared<const Garment>(
+            (scaled ? scaledGarment(old, factor) : old).with_pins(std::move(pins)));
+        build(body, entry);
+    } catch (const std::exception& error) {
+        entry.step.reset();
+        if (entry.stepping == Stepping::cloth) entry.stepping = Stepping::bullet;
+        say(error.what());
+    }
 }
 
 void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies,
@@ -171,6 +216,7 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
         entry.worldId = id;
         entry.seen = true;
         refresh(body, entry);
+        mendBounds(body);
     }
     for (auto it = m_entries.begin(); it != m_entries.end();) {
         const bool gone =
@@ -186,9 +232,12 @@ btGnnSoftBodySolver::Stepping btGnnSoftBodySolver::steppingOf(const btSoftBody* 
 }
 
 void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (steppingOf(m_softBodySet[i]) == Stepping::bullet && m_softBodySet[i]->isActive())
-            m_softBodySet[i]->predictMotion(solverdt);
+    for (int i = 0; i < m_softBodySet.size(); ++i) {
+        btSoftBody& body = *m_softBodySet[i];
+        if (steppingOf(&body) != Stepping::bullet || !body.isActive()) continue;
+        body.predictMotion(solverdt);
+        mendBounds(body);
+    }
 }
 
 void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
@@ -253,7 +302,9 @@ void btGnnSoftBodySolver::updateSoftBodies() {
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body,
                                            const btCollisionObjectWrapper* object) {
-    if (steppingOf(body) == Stepping::bullet) body->defaultCollisionHandler(object);
+    if (steppingOf(body) == Stepping::bullet && fitsDistanceField(*body) &&
+        isFinite(object->getWorldTransform()))
+        body->defaultCollisionHandler(object);
 }
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body, btSoftBody* otherBody) {

@@ -34,6 +34,10 @@ Points transformed(const Pose& pose, const Points& local) {
     return (local * pose.linear().transpose()).rowwise() + pose.translation().transpose();
 }
 
+bool isFinite(const btTransform& pose) {
+    return toVec3(pose.getOrigin()).allFinite() && toMatrix(pose.getBasis()).allFinite();
+}
+
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
@@ -133,7 +137,7 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
 
 bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
     if (object.getInternalType() == btCollisionObject::CO_SOFT_BODY) return false;
-    if (!object.hasContactResponse()) return false;
+    if (!object.hasContactResponse() || !isFinite(object.getWorldTransform())) return false;
     const btBroadphaseProxy* a = body.getBroadphaseHandle();
     const btBroadphaseProxy* b = object.getBroadphaseHandle();
     if (a && b &&

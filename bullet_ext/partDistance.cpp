@@ -1,7 +1,11 @@
 #include "bullet_ext/partDistance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
+
+#include "data/errors.h"
 
 namespace cloth {
 
@@ -17,13 +21,48 @@ double capsuleDistance(const Vec3& p, double half_length, double radius) {
     return (p - nearest).norm() - radius;
 }
 
+Faces facesWithArea(const Points& x, const Faces& faces) {
+    constexpr double kLeast = 1e-14;  // m^2
+    const VectorX areas = face_area_vectors(x, faces).rowwise().norm();
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        if (areas[f] > kLeast && std::isfinite(areas[f])) kept.push_back(f);
+    Faces rest(static_cast<Eigen::Index>(kept.size()), 3);
+    for (size_t k = 0; k < kept.size(); ++k)
+        rest.row(static_cast<Eigen::Index>(k)) = faces.row(kept[k]);
+    return rest;
+}
+
+/// Every face with corners of its own.
+TriMesh triangleSoup(const Points& x, const Faces& faces) {
+    TriMesh soup{Points(3 * faces.rows(), 3), Faces(faces.rows(), 3)};
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int c = 0; c < 3; ++c) {
+            soup.faces(f, c) = static_cast<int>(3 * f) + c;
+            soup.vertices.row(3 * f + c) = x.row(faces(f, c));
+        }
+    return soup;
+}
+
+/// Null if the mesh has no surface. Where more than two faces meet in an edge, Bullet's users may
+/// well have such meshes, inside and outside are those of the nearest face.
+std::unique_ptr<SurfaceDistance> distanceTo(const Points& x, const Faces& all) {
+    const Faces faces = facesWithArea(x, all);
+    if (faces.rows() == 0) return nullptr;
+    try {
+        return std::make_unique<SurfaceDistance>(TriMesh{x, faces});
+    } catch (const ArgumentError&) {
+        return std::make_unique<SurfaceDistance>(triangleSoup(x, faces));
+    }
+}
+
 }  // namespace
 
 PartDistance::PartDistance(const ShapePart& part) : m_part(part), m_inverse(part.frame.inverse()) {
     if (part.shape != ObstacleShape::mesh) return;
     m_low = part.vertices.colwise().minCoeff();
     m_high = part.vertices.colwise().maxCoeff();
-    m_mesh = std::make_unique<SurfaceDistance>(TriMesh{part.vertices, *part.faces});
+    m_mesh = distanceTo(part.vertices, *part.faces);
 }
 
 double PartDistance::at(const Vec3& point, double radius) const {
@@ -43,7 +82,7 @@ double PartDistance::at(const Vec3& point, double radius) const {
             distance = local.y();
             break;
         case ObstacleShape::mesh:
-            if ((point.array() < m_low.array() - radius).any() ||
+            if (!m_mesh || (point.array() < m_low.array() - radius).any() ||
                 (point.array() > m_high.array() + radius).any())
                 return distance;
             return m_mesh->nearest(point, radius).distance;

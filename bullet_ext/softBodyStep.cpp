@@ -28,6 +28,12 @@ btVector3 restored(const float* written) {
     return {written[0], written[1], written[2]};
 }
 
+/// Whether Bullet's floats can hold the numbers and their squares.
+bool fitsFloats(const Points& points) {
+    constexpr double kMost = 1e15;  // m, m/s
+    return points.allFinite() && (points.size() == 0 || points.cwiseAbs().maxCoeff() < kMost);
+}
+
 struct Box {
     Vec3 low, high;
 };
@@ -62,13 +68,16 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
 }
 
 SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, double reach) {
+    // A frame that took so long, or such a time scale, must not cost a thousand ticks.
+    constexpr double kLongest = 2.0;  // s
     m_time_scale = static_cast<double>(m_body.m_cfg.timescale);
-    m_h = h * m_time_scale;
+    m_h = std::min(h * m_time_scale, kLongest);
     Result result;
-    // A paused body, or one whose nodes changed since the solver looked at it: next step.
-    if (!(m_h > 0.0) || m_body.m_nodes.size() != m_shown.x.rows()) return result;
-    takeConstants();
+    // Nodes changed since the solver looked at them: next step.
+    if (m_body.m_nodes.size() != m_shown.x.rows()) return result;
     result.restored_nodes = restoreNodes();
+    if (!(m_h > 0.0)) return result;  // a paused body
+    takeConstants();
     takeNodes();
     takeForces();
     takePins();
@@ -176,9 +185,9 @@ void SoftBodyStep::takePins() {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
         const auto pin = std::lower_bound(pins.begin(), pins.end(), node);
-        if (pin != pins.end() && *pin == node)
-            m_pins_after.row(pin - pins.begin()) =
-                toVec3(anchor.m_body->getWorldTransform() * anchor.m_local);
+        const btVector3 place = anchor.m_body->getWorldTransform() * anchor.m_local;
+        if (pin != pins.end() && *pin == node && finite(place))
+            m_pins_after.row(pin - pins.begin()) = toVec3(place);
     }
 }
 
@@ -229,14 +238,14 @@ bool SoftBodyStep::runTick(BulletObstacles& obstacles, double reach) {
     const Boundary boundary = boundaryOfTick(obstacles, box.low, box.high);
     ClothState to = from;
     m_report = m_stepper->step(boundary, m_tick.length, to);
-    m_report.finite = m_report.finite && to.x.allFinite() && to.v.allFinite();
+    m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
     m_tick.to = m_report.finite ? std::move(to) : from;
     m_tick.to.time = from.time + m_tick.length;
     if (m_report.finite)
         m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_tick.to, m_tick.length,
                              obstacles.solidsNear(m_body, box.low, box.high,
                                                   (m_tick.begin + m_tick.length) / m_time_scale)});
-    const double damping = static_cast<double>(m_body.m_cfg.kDP);
+    const double damping = std::min(static_cast<double>(m_body.m_cfg.kDP), 1.0);
     if (damping > 0.0) m_tick.to.v *= std::pow(1.0 - damping, m_tick.length / m_h);
     return m_report.finite;
 }

@@ -15,6 +15,8 @@ using namespace cloth::test;
 
 namespace {
 
+constexpr btScalar kNan = std::numeric_limits<btScalar>::quiet_NaN();
+
 class BadInput : public testing::Test {
  protected:
     BadInput() : solver(quasi_newton(1.0 / 30.0, 3)), world(&solver) {
@@ -157,4 +159,114 @@ TEST_F(BadInput, AnUnsupportedObstacleIsToldAndPassedThrough) {
     run(patch(world.info(), {0, 0, 0}, 9));
     expect_cloth();
     delete scaled->getChildShape();
+}
+
+TEST_F(BadInput, NaNUnderBulletsStepDoesNotCrashItsDistanceField) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->appendNode({0, 0.1f, 0}, 1);  // belongs to no face: Bullet steps the body
+    world.add(body);
+    world.add(new btSphereShape(0.3f), {0, -0.2f, 0});
+    world.step(1.0 / 60.0);
+    body->addForce({kNan, 0, 0});
+    world.step(1.0 / 60.0, 40);
+    EXPECT_EQ(solver.status().frozenBodies, 1);
+    EXPECT_LT(node(*healthy, 12).y(), -1.0);
+}
+
+// Bullet's broadphase loses objects beside one whose bounds are not finite.
+TEST_F(BadInput, NaNInOneBodyHidesNoObstacleFromOthers) {
+    world.add(new btBoxShape({2, 0.5f, 2}), {5, -1, 0});
+    const btVector3 x[] = {{kNan, 0, 0}, {1, 0, kNan}, {0, kNan, 1}};
+    const btScalar masses[] = {1, 1, 1};
+    auto* broken = new btSoftBody(&world.info(), 3, x, masses);
+    broken->appendFace(0, 1, 2);
+    world.add(broken);
+    world.step(1.0 / 60.0, 60);
+    EXPECT_EQ(solver.status().frozenBodies, 1);
+    EXPECT_GT(node(*healthy, 12).y(), -0.5);
+}
+
+TEST_F(BadInput, NaNIsPutBackInAPausedBodyToo) {
+    btSoftBody* body = world.add(patch(world.info(), {0, 0, 0}));
+    world.step(1.0 / 60.0);
+    const Vec3 before = node(*body, 3);
+    body->m_cfg.timescale = 0;
+    body->m_nodes[3].m_x.setX(kNan);
+    world.step(1.0 / 60.0);
+    EXPECT_EQ(node(*body, 3), before);
+}
+
+TEST_F(BadInput, ALongStepOrAFastTimeScaleCostsNoMoreThanTwoSeconds) {
+    btGnnSoftBodySolver ticking(free_fall(nullptr, 1.0 / 30.0));
+    World other(&ticking);
+    btSoftBody* body = other.add(patch(other.info(), {0, 0, 0}));
+    for (const btScalar scale : {1.0f, 1e6f, std::numeric_limits<float>::infinity()}) {
+        const long before = ticking.status().steps;
+        body->m_cfg.timescale = scale;
+        other.step(1e4);
+        EXPECT_LE(ticking.status().steps - before, 61) << scale;
+    }
+    EXPECT_TRUE(node(*body, 12).allFinite());
+}
+
+TEST_F(BadInput, DampingAboveOneStopsTheCloth) {
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->m_cfg.kDP = 1.5f;
+    run(body);
+    EXPECT_GT(node(*body, 12).y(), -0.3);
+}
+
+TEST_F(BadInput, ScalingToNothingIsToldAndLeavesTheBodyToBullet) {
+    btSoftBody* body = world.add(patch(world.info(), {0, 0, 0}));
+    body->setUserIndex(7);
+    world.step(1.0 / 60.0);
+    body->setRestLengthScale(0);
+    world.step(1.0 / 60.0);
+    expect_told("face", "area");
+}
+
+TEST_F(BadInput, MassesThatBecomeInfiniteFreezeTheBodyUntilTheyAreMended) {
+    btSoftBody* body = world.add(patch(world.info(), {0, 0, 0}, 5, 1 + 2));
+    body->setUserIndex(7);
+    world.step(1.0 / 60.0, 20);
+    const Points rest = solver.garmentOf(body)->rest().vertices;
+    body->setTotalMass(0);
+    const Vec3 before = node(*body, 24);
+    world.step(1.0 / 60.0, 5);
+    expect_told("node 0", "inverse mass");
+    EXPECT_EQ(solver.status().frozenBodies, 1);
+    EXPECT_EQ(node(*body, 24), before);
+    for (int i = 0; i < body->m_nodes.size(); ++i) body->setMass(i, 1);
+    world.step(1.0 / 60.0);
+    ASSERT_NE(solver.garmentOf(body), nullptr);
+    EXPECT_EQ(solver.garmentOf(body)->rest().vertices, rest);
+    EXPECT_LT(node(*body, 24).y(), before.y());
+}
+
+TEST_F(BadInput, TrianglesThatShareAnEdgeByThreesHoldClothAndLooseBodies) {
+    btTriangleMesh triangles;
+    const btVector3 a(-1, -0.2f, 0), b(1, -0.2f, 0);
+    for (const btVector3& c :
+         {btVector3(0, -0.2f, 1), btVector3(0, -0.2f, -1), btVector3(0, -1, 0)})
+        triangles.addTriangle(a, b, c);
+    triangles.addTriangle(a, a, b);
+    world.add(new btBvhTriangleMeshShape(&triangles, true), {0, 0, 0});
+    world.add(new btSphereShape(0.1f), {0, 0.2f, 0}, false, 0.1f);
+    run(patch(world.info(), {0, 0, 0}, 9));
+    expect_cloth();
+}
+
+TEST_F(BadInput, AnObstacleWhosePoseIsNotFiniteIsNone) {
+    btRigidBody* box = world.add(new btBoxShape({0.3f, 0.1f, 0.3f}), {0, -0.2f, 0}, true);
+    btSoftBody* body = patch(world.info(), {0, 0, 0});
+    body->appendAnchor(0, box);
+    world.add(body);
+    world.step(1.0 / 60.0, 5);
+    const Vec3 anchored = node(*body, 0);
+    btTransform nowhere = box->getWorldTransform();
+    nowhere.setOrigin({kNan, 0, 0});
+    box->setWorldTransform(nowhere);
+    world.step(1.0 / 60.0, 30);
+    expect_cloth();
+    EXPECT_EQ(node(*body, 0), anchored);
 }

@@ -67,6 +67,14 @@ class World {
         m_world->addRigidBody(body);
         return body;
     }
+    void remove(btRigidBody* body) {
+        m_world->removeRigidBody(body);
+        for (auto it = m_objects.begin(); it != m_objects.end(); ++it)
+            if (it->get() == body) {
+                m_objects.erase(it);
+                return;
+            }
+    }
     void step(double h, int count = 1) {
         for (int i = 0; i < count; ++i) m_world->stepSimulation(static_cast<btScalar>(h), 0);
     }

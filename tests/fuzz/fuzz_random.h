@@ -12,7 +12,7 @@ namespace cloth::fuzz {
 /// library are not).
 class Random {
  public:
-    explicit Random(unsigned seed) : m_bits(seed) {}
+    explicit Random(unsigned first) : m_bits(first) {}
 
     double uniform(double low, double high) {
         return low + (high - low) * (m_bits() / 4294967296.0);
