@@ -4,6 +4,8 @@
 #include <new>
 #include <vector>
 
+#include "gnn/model/bfloat16.h"
+
 namespace cloth {
 
 /// Gives memory that starts on a cache line, so that no vector load straddles two.
@@ -22,5 +24,6 @@ struct CacheLineAllocator {
 };
 
 using AlignedBuffer = std::vector<float, CacheLineAllocator<float>>;
+using AlignedHalves = std::vector<Bfloat16, CacheLineAllocator<Bfloat16>>;
 
 }  // namespace cloth

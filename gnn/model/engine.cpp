@@ -99,6 +99,11 @@ class Engine::Pass {
              float* sum, EngineWorkspace::Scratch& mine) const {
         message_block_forward(weights, rows, out, sum, mine.block, m_instructions);
     }
+    void layer(int rows, const float* x, const Panels& panels, const float* bias, bool with_relu,
+               float* y, EngineWorkspace::Scratch& mine) const {
+        dense_layer(rows, m_width, m_width, x, panels, bias, with_relu, y, mine.block,
+                    m_instructions);
+    }
     void encode_rows(const EngineWeights::Encoder& encoder, const float* in, int count, float* to,
                      EngineWorkspace::Scratch& mine) const;
     void encode_world(const Group& group, EngineWorkspace::Scratch& mine) const;
@@ -107,7 +112,7 @@ class Engine::Pass {
     void update_bodies(const Group& group, size_t k, bool keep,
                        EngineWorkspace::Scratch& mine) const;
     void update_nodes(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
-    void make_sender_products(const Group& group, size_t k) const;
+    void make_sender_products(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
 
     const EngineWeights& m_weights;
     const ModelConfig& m_config;
@@ -159,7 +164,7 @@ void Engine::Pass::encode(int group, EngineWorkspace::Scratch& mine) const {
                 read_rows(m_features.edge, m_weights.edge_encoder(), nullptr, e0, e1, mine.in),
                 e1 - e0, row(m_work.edges, e0), mine);
     if (m_config.world_every_step) encode_world(g, mine);
-    make_sender_products(g, 0);
+    make_sender_products(g, 0, mine);
 }
 
 void Engine::Pass::encode_world(const Group& group, EngineWorkspace::Scratch& mine) const {
@@ -177,18 +182,18 @@ void Engine::Pass::encode_world(const Group& group, EngineWorkspace::Scratch& mi
                 mine);
 }
 
-void Engine::Pass::make_sender_products(const Group& group, size_t k) const {
-    dense_layer(group.vertices, m_width, m_width, row(m_work.nodes, group.v0),
-                m_weights.step(k).sender, nullptr, false, row(m_work.sender[k % 2], group.v0),
-                m_instructions);
+void Engine::Pass::make_sender_products(const Group& group, size_t k,
+                                        EngineWorkspace::Scratch& mine) const {
+    layer(group.vertices, row(m_work.nodes, group.v0), m_weights.step(k).sender, nullptr, false,
+          row(m_work.sender[k % 2], group.v0), mine);
 }
 
 void Engine::Pass::send_edges(int group, size_t k, EngineWorkspace::Scratch& mine) const {
     const Group g = group_of(group);
     const EdgeTable& table = m_topology.table(k);
     const int first = table.first_row[static_cast<size_t>(group)];
-    dense_layer(g.vertices, m_width, m_width, row(m_work.nodes, g.v0), m_weights.step(k).receiver,
-                nullptr, false, mine.receiver.data(), m_instructions);
+    layer(g.vertices, row(m_work.nodes, g.v0), m_weights.step(k).receiver, nullptr, false,
+          mine.receiver.data(), mine);
     std::fill(mine.mesh_sum.begin(), mine.mesh_sum.end(), 0.0f);
     // the group's rows of these two lie in scratch: counted from its first vertex
     const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(g.v0) * m_width;
@@ -264,17 +269,16 @@ void Engine::Pass::step(int group, size_t k, EngineWorkspace::Scratch& mine) con
         send_world(g, k, mine);
     }
     update_nodes(g, k, mine);
-    if (static_cast<int>(k) + 1 < m_config.steps) make_sender_products(g, k + 1);
+    if (static_cast<int>(k) + 1 < m_config.steps) make_sender_products(g, k + 1, mine);
 }
 
 void Engine::Pass::decode(int group, EngineWorkspace::Scratch& mine) const {
     const Group g = group_of(group);
     const EngineWeights::Decoder& decoder = m_weights.decoder();
     float *first = mine.receiver.data(), *second = mine.hidden.data();
-    dense_layer(g.vertices, m_width, m_width, row(m_work.nodes, g.v0), decoder.first,
-                decoder.first_bias, true, first, m_instructions);
-    dense_layer(g.vertices, m_width, m_width, first, decoder.hidden, decoder.hidden_bias, true,
-                second, m_instructions);
+    layer(g.vertices, row(m_work.nodes, g.v0), decoder.first, decoder.first_bias, true, first,
+          mine);
+    layer(g.vertices, first, decoder.hidden, decoder.hidden_bias, true, second, mine);
     for (int r = 0; r < g.vertices; ++r)
         for (int c = 0; c < 3; ++c) {
             float sum = decoder.output_bias[c];

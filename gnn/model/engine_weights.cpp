@@ -7,14 +7,22 @@
 
 namespace cloth {
 
-/// Appends tensors to one array. Walks the network twice: once to count, once to copy, so that
-/// pointers into the array stay valid.
+/// Appends tensors to one array, panels in bfloat16 to another. Walks the network twice: once to
+/// count, once to copy, so that pointers into the arrays stay valid.
 class EngineWeights::Packer {
  public:
-    Packer(const Weights& weights, AlignedBuffer* numbers)
-        : m_weights(weights), m_numbers(numbers) {}
+    Packer(const Weights& weights, Precision precision)
+        : m_weights(weights), m_precision(precision) {}
 
-    size_t count() const { return m_count; }
+    /// What was counted is allocated; the next walk copies.
+    void allocate(AlignedBuffer& numbers, AlignedHalves& rounded) {
+        numbers.resize(m_count);
+        rounded.resize(m_rounded_count);
+        m_numbers = numbers.data();
+        m_rounded = rounded.data();
+        m_copies = true;
+        m_count = m_rounded_count = 0;
+    }
 
     const float* values(const std::string& name) {
         const std::vector<float>& data = m_weights.tensor(name).data;
@@ -23,11 +31,11 @@ class EngineWeights::Packer {
         return to;
     }
 
-    const float* panels(const std::string& name) {
+    Panels panels(const std::string& name) {
         const WeightTensor& tensor = m_weights.tensor(name);
-        float* to = take(tensor.data.size());
-        if (to) pack_panels(tensor.data.data(), tensor.shape[0], tensor.shape[1], to);
-        return to;
+        return packed(tensor.data.size(), [&tensor](auto* to) {
+            pack_panels(tensor.data.data(), tensor.shape[0], tensor.shape[1], to);
+        });
     }
 
     Statistics statistics(const std::string& name) {
@@ -53,9 +61,7 @@ class EngineWeights::Packer {
         }
         w.w2 = m_weights.tensor(name + ".hidden.1.weight").data.data();
         w.w3 = m_weights.tensor(name + ".output.weight").data.data();
-        float* to = take(block_panel_count(w));
-        if (to) pack_block(w, to);
-        w.panels = to;
+        w.panels = packed(block_panel_count(w), [&w](auto* to) { pack_block(w, to); });
         w.w1[0] = w.w1[1] = w.w1[2] = w.w2 = w.w3 = nullptr;
         w.b1 = values(name + ".first.bias");
         w.b2 = values(name + ".hidden.1.bias");
@@ -76,15 +82,35 @@ class EngineWeights::Packer {
         return result;
     }
 
+    static size_t padded(size_t count) { return (count + 31) / 32 * 32; }  // whole cache lines
+
     float* take(size_t count) {
         const size_t first = m_count;
-        m_count += (count + 15) / 16 * 16;
-        return m_numbers ? m_numbers->data() + first : nullptr;
+        m_count += padded(count);
+        return m_copies ? m_numbers + first : nullptr;
+    }
+
+    /// Room for panels in the precision asked for; `pack` fills it.
+    template <typename Pack>
+    Panels packed(size_t count, const Pack& pack) {
+        if (m_precision == Precision::float32) {
+            float* to = take(count);
+            if (to) pack(to);
+            return to;
+        }
+        const size_t first = m_rounded_count;
+        m_rounded_count += padded(count);
+        if (!m_copies) return {};
+        pack(m_rounded + first);
+        return m_rounded + first;
     }
 
     const Weights& m_weights;
-    AlignedBuffer* m_numbers;
-    size_t m_count = 0;
+    const Precision m_precision;
+    float* m_numbers = nullptr;
+    Bfloat16* m_rounded = nullptr;
+    size_t m_count = 0, m_rounded_count = 0;
+    bool m_copies = false;
 };
 
 static std::vector<int> columns_called(const std::string& prefix) {
@@ -96,15 +122,18 @@ static std::vector<int> columns_called(const std::string& prefix) {
     return columns;
 }
 
-EngineWeights::EngineWeights(const Weights& weights)
-    : m_config(weights.config), m_relative_columns(columns_called("relative")) {
+EngineWeights::EngineWeights(const Weights& weights, Precision precision)
+    : m_config(weights.config),
+      m_precision(precision),
+      m_relative_columns(columns_called("relative")) {
     if (m_config.width % 16 != 0 || m_config.hidden_layers != 2)
         throw ArgumentError("weights of '" + m_config.variant + "'",
                             "have width " + std::to_string(m_config.width) + " and " +
                                 std::to_string(m_config.hidden_layers) + " hidden layers",
                             "the engine takes widths that are multiples of 16 and two hidden "
                             "layers; run others with LibTorch");
-    const auto pack = [&](Packer packer) {
+    Packer packer(weights, precision);
+    const auto walk = [&] {
         const auto encoder = [&packer](const std::string& name) {
             return Encoder{packer.block("encoder." + name, {"features"}), packer.statistics(name)};
         };
@@ -133,10 +162,10 @@ EngineWeights::EngineWeights(const Weights& weights)
         m_decoder.hidden_bias = packer.values("decoder.hidden.1.bias");
         m_decoder.output = packer.values("decoder.output.weight");
         m_decoder.output_bias = packer.values("decoder.output.bias");
-        return packer.count();
     };
-    m_numbers.resize(pack(Packer(weights, nullptr)));
-    pack(Packer(weights, &m_numbers));
+    walk();
+    packer.allocate(m_numbers, m_rounded);
+    walk();
 }
 
 }  // namespace cloth

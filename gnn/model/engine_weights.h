@@ -9,15 +9,18 @@
 namespace cloth {
 
 /// Trained weights as the engine reads them: one block of memory, matrices in panels. Constant;
-/// any number of engines share one.
+/// any number of engines share one. Their precision is the engines' precision.
 ///
 ///     const auto weights = std::make_shared<const EngineWeights>(Weights::load(file));
 ///     Engine shirt(weights), trousers(weights);
+///
+/// Precision::bfloat16 halves them, and the time where the processor has AVX512-BF16. What that
+/// does to an acceleration is a matter of the weights: measure it (README, "The engine").
 class EngineWeights {
  public:
     /// Copies what it needs. @throws ArgumentError if the width is no multiple of 16 or there are
     /// not two hidden layers
-    explicit EngineWeights(const Weights& weights);
+    explicit EngineWeights(const Weights& weights, Precision precision = Precision::float32);
     EngineWeights(const EngineWeights&) = delete;
     EngineWeights& operator=(const EngineWeights&) = delete;
 
@@ -30,14 +33,16 @@ class EngineWeights {
     };
     struct Step {
         MessageBlockWeights edge, world, node;
-        const float *receiver, *sender;  ///< panels of the split first layer's A and B
+        Panels receiver, sender;  ///< of the split first layer's A and B
     };
     struct Decoder {
-        const float *first, *first_bias, *hidden, *hidden_bias;  ///< panels and biases
-        const float *output, *output_bias;                       ///< (3 x D), (3)
+        Panels first, hidden;
+        const float *first_bias, *hidden_bias;
+        const float *output, *output_bias;  ///< (3 x D), (3)
     };
 
     const ModelConfig& config() const { return m_config; }
+    Precision precision() const { return m_precision; }
     const Encoder& node_encoder() const { return m_node; }
     const Encoder& edge_encoder() const { return m_edge; }
     const Encoder& world_encoder() const { return m_world; }
@@ -48,13 +53,17 @@ class EngineWeights {
     /// Columns of the world edges' features that change sign if seen from the other end.
     const std::vector<int>& relative_columns() const { return m_relative_columns; }
 
-    size_t bytes() const { return sizeof(float) * m_numbers.capacity(); }
+    size_t bytes() const {
+        return sizeof(float) * m_numbers.capacity() + sizeof(Bfloat16) * m_rounded.capacity();
+    }
 
  private:
     class Packer;
 
     ModelConfig m_config;
+    Precision m_precision;
     AlignedBuffer m_numbers;
+    AlignedHalves m_rounded;  ///< panels in bfloat16
     Encoder m_node, m_edge, m_world, m_body;
     std::vector<Step> m_steps;
     Decoder m_decoder;

@@ -11,6 +11,7 @@ namespace {
 
 const MessageKernels& kernels_for(Instructions instructions) {
 #if defined(__x86_64__)
+    if (instructions == Instructions::avx512_bf16) return avx512_bf16_kernels;
     if (instructions == Instructions::avx512) return avx512_kernels;
     if (instructions == Instructions::avx2) return avx2_kernels;
 #endif
@@ -40,6 +41,8 @@ float* prepare(MessageBlockWeights& w, MessageBlockScratch& scratch) {
 
 bool is_supported(Instructions instructions) {
 #if defined(__x86_64__)
+    if (instructions == Instructions::avx512_bf16)
+        return __builtin_cpu_supports("avx512bf16") && is_supported(Instructions::avx512);
     if (instructions == Instructions::avx512)
         return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
@@ -50,9 +53,12 @@ bool is_supported(Instructions instructions) {
 }
 
 Instructions best_instructions() {
-    static const Instructions best = is_supported(Instructions::avx512) ? Instructions::avx512
-                                     : is_supported(Instructions::avx2) ? Instructions::avx2
-                                                                        : Instructions::portable;
+    static const Instructions best = [] {
+        for (const Instructions one :
+             {Instructions::avx512_bf16, Instructions::avx512, Instructions::avx2})
+            if (is_supported(one)) return one;
+        return Instructions::portable;
+    }();
     return best;
 }
 
@@ -64,6 +70,16 @@ void pack_panels(const float* weight, int out, int in, float* panels) {
     }
 }
 
+void pack_panels(const float* weight, int out, int in, Bfloat16* panels) {
+    for (int first = 0; first < out; first += panel_width) {
+        const int width = std::min(panel_width, out - first);
+        for (int i = 0; i < in; i += 2)
+            for (int o = 0; o < width; ++o)
+                for (int k = 0; k < 2; ++k)
+                    *panels++ = to_bfloat16(weight[(first + o) * in + i + k]);
+    }
+}
+
 size_t block_panel_count(const MessageBlockWeights& w) {
     const size_t d = static_cast<size_t>(w.width);
     size_t count = 2 * d * d;
@@ -71,13 +87,30 @@ size_t block_panel_count(const MessageBlockWeights& w) {
     return count;
 }
 
-void pack_block(const MessageBlockWeights& w, float* panels) {
+template <typename Number>
+static Number* pack_first_and_second(const MessageBlockWeights& w, Number* panels) {
     for (int k = 0; k < w.inputs; ++k) {
         pack_panels(w.w1[k], w.width, w.in[k], panels);
         panels += w.width * w.in[k];
     }
     pack_panels(w.w2, w.width, w.width, panels);
-    pack_panels(w.w3, w.width, w.width, panels + w.width * w.width);
+    return panels + w.width * w.width;
+}
+
+void pack_block(const MessageBlockWeights& w, float* panels) {
+    pack_panels(w.w3, w.width, w.width, pack_first_and_second(w, panels));
+}
+
+void pack_block(const MessageBlockWeights& w, Bfloat16* panels) {
+    const size_t d = static_cast<size_t>(w.width);
+    std::vector<float> centred(w.w3, w.w3 + d * d);
+    for (size_t i = 0; i < d; ++i) {
+        double mean = 0.0;
+        for (size_t o = 0; o < d; ++o) mean += static_cast<double>(w.w3[o * d + i]);
+        for (size_t o = 0; o < d; ++o)
+            centred[o * d + i] -= static_cast<float>(mean / static_cast<double>(d));
+    }
+    pack_panels(centred.data(), w.width, w.width, pack_first_and_second(w, panels));
 }
 
 void message_block_forward(const MessageBlockWeights& weights, const MessageBlockRows& rows,
@@ -85,7 +118,9 @@ void message_block_forward(const MessageBlockWeights& weights, const MessageBloc
                            Instructions instructions) {
     MessageBlockWeights packed = weights;
     float* buffers = prepare(packed, scratch);
-    kernels_for(instructions).forward(packed, rows, out, sum, buffers);
+    const MessageKernels& kernels = kernels_for(instructions);
+    (packed.panels.bfloat16 ? kernels.forward_bf16 : kernels.forward)(packed, rows, out, sum,
+                                                                      buffers);
 }
 
 void message_block_backward(const MessageBlockWeights& weights, const MessageBlockRows& rows,
@@ -97,9 +132,17 @@ void message_block_backward(const MessageBlockWeights& weights, const MessageBlo
     kernels_for(instructions).backward(packed, rows, d_out, d_sum, gradients, buffers);
 }
 
-void dense_layer(int rows, int in, int out, const float* x, const float* panels, const float* bias,
-                 bool with_relu, float* y, Instructions instructions) {
-    kernels_for(instructions).dense(rows, in, out, x, panels, bias, with_relu, y);
+void dense_layer(int rows, int in, int out, const float* x, Panels panels, const float* bias,
+                 bool with_relu, float* y, MessageBlockScratch& scratch,
+                 Instructions instructions) {
+    const MessageKernels& kernels = kernels_for(instructions);
+    if (panels.float32) {
+        kernels.dense(rows, in, out, x, panels.float32, bias, with_relu, y);
+        return;
+    }
+    const size_t tile = static_cast<size_t>(tile_rows / 2 * in);
+    if (scratch.size() < tile) scratch.resize(tile);
+    kernels.dense_bf16(rows, in, out, x, panels.bfloat16, bias, with_relu, y, scratch.data());
 }
 
 static size_t row_of(const int* index, int r) {

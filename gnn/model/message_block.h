@@ -6,6 +6,16 @@
 
 namespace cloth {
 
+/// Packed matrices in one of two precisions: one pointer is set, or none.
+struct Panels {
+    Panels() = default;
+    Panels(const float* numbers) : float32(numbers) {}
+    Panels(const Bfloat16* numbers) : bfloat16(numbers) {}
+    explicit operator bool() const { return float32 || bfloat16; }
+    const float* float32 = nullptr;
+    const Bfloat16* bfloat16 = nullptr;
+};
+
 /// The one computation that a MeshGraphNets processor repeats, fused over tiles of rows:
 ///
 ///     h1 = relu(sum_k W1_k x_k[row] + sum_k p_k[row] + b1)    x: direct inputs, p: given products
@@ -30,8 +40,9 @@ struct MessageBlockWeights {
     const float *w3 = nullptr, *b3 = nullptr;       ///< (D x D), (D)
     const float *gamma = nullptr, *beta = nullptr;  ///< LayerNorm's (D)
 
-    /// pack_block()'s result: the forward pass then needs no w1, w2, w3. Null: packed in each call.
-    const float* panels = nullptr;
+    /// pack_block()'s result: the forward pass then needs no w1, w2, w3. None: packed in each call,
+    /// as float32.
+    Panels panels;
 };
 
 /// Which rows of which matrices a block reads and writes. A null index means row r itself.
@@ -60,25 +71,32 @@ struct MessageBlockGradients {
 using MessageBlockScratch = AlignedBuffer;  ///< grown on first use, then reused
 
 /// Instruction sets that the loops are compiled for.
-enum class Instructions { portable, avx2, avx512 };
+/// avx512_bf16 multiplies bfloat16 at twice the rate of float32; the others widen it first and gain
+/// nothing but memory. Its float32 numbers are those of avx512.
+enum class Instructions { portable, avx2, avx512, avx512_bf16 };
 bool is_supported(Instructions instructions);  ///< by this processor
 Instructions best_instructions();
 
 /// A matrix (out x in) as the forward pass reads it: panels of 32 outputs, input by input.
 /// @param out, in  multiples of 16
-/// @param panels   out * in numbers
+/// @param panels   out * in numbers; in bfloat16 an output's numbers of two inputs lie side by side
 void pack_panels(const float* weight, int out, int in, float* panels);
+void pack_panels(const float* weight, int out, int in, Bfloat16* panels);
 
-/// Number of floats of a block's panels, and the panels: w1[0], ..., w2, w3.
+/// Count of a block's panel numbers, and the panels: w1[0], ..., w2, w3. In bfloat16 w3 is stored
+/// less the mean of its rows, so that LayerNorm finds a mean of zero.
 std::size_t block_panel_count(const MessageBlockWeights& weights);
 void pack_block(const MessageBlockWeights& weights, float* panels);
+void pack_block(const MessageBlockWeights& weights, Bfloat16* panels);
 
+/// In the precision of the panels.
 /// @param out  residual output, indexed like x[0] (x_0 + m), or null; may be x[0] itself
 /// @param sum  summed messages (* x D), added to, or null
 void message_block_forward(const MessageBlockWeights& weights, const MessageBlockRows& rows,
                            float* out, float* sum, MessageBlockScratch& scratch,
                            Instructions instructions = best_instructions());
 
+/// In float32 only.
 /// @param d_out  gradient of `out` (indexed like x[0]), or null. The residual's own share of it is
 ///               not added to gradients.x[0]: the caller starts that gradient as a copy of d_out.
 /// @param d_sum  gradient of `sum`, or null
@@ -92,10 +110,11 @@ void message_block_backward(const MessageBlockWeights& weights, const MessageBlo
 /// @param panels  of the weight (out x in), from pack_panels()
 /// @param bias    (out), or null
 /// @param y       (rows x out)
-void dense_layer(int rows, int in, int out, const float* x, const float* panels, const float* bias,
-                 bool with_relu, float* y, Instructions instructions = best_instructions());
+void dense_layer(int rows, int in, int out, const float* x, Panels panels, const float* bias,
+                 bool with_relu, float* y, MessageBlockScratch& scratch,
+                 Instructions instructions = best_instructions());
 
-/// The same forward pass as plain loops: the oracle of the tests.
+/// The same forward pass as plain loops in float32: the oracle of the tests.
 void message_block_forward_plain(const MessageBlockWeights& weights, const MessageBlockRows& rows,
                                  float* out, float* sum);
 

@@ -13,13 +13,17 @@ struct MessageKernels {
                      const float* d_sum, const MessageBlockGradients&, float* scratch);
     void (*dense)(int rows, int in, int out, const float* x, const float* panels, const float* bias,
                   bool with_relu, float* y);
+    void (*forward_bf16)(const MessageBlockWeights&, const MessageBlockRows&, float* out,
+                         float* sum, float* scratch);
+    void (*dense_bf16)(int rows, int in, int out, const float* x, const Bfloat16* panels,
+                       const float* bias, bool with_relu, float* y, float* scratch);
 };
 
 /// Each is compiled with its own options, in a file of its own; call one only where the processor
 /// has the instructions.
 extern const MessageKernels portable_kernels;
 #if defined(__x86_64__)
-extern const MessageKernels avx2_kernels, avx512_kernels;
+extern const MessageKernels avx2_kernels, avx512_kernels, avx512_bf16_kernels;
 #endif
 
 constexpr int kernel_lanes = 16;  ///< numbers that are worked on together: every width's divisor

@@ -6,7 +6,7 @@
 // BLOCK x COLUMNS x 16 sums are kept in registers: 8 x 2 fill 16 of the 32 registers of AVX-512 and
 // need 10 loads for 16 multiply-adds, 6 x 1 (two registers each) 12 of the 16 of AVX2.
 
-#if defined(__AVX2__) && !defined(__AVX512F__)
+#if defined(__AVX512BF16__) || (defined(__AVX2__) && !defined(__AVX512F__))
 #include <immintrin.h>
 #endif
 
@@ -224,7 +224,7 @@ CLOTH_INLINE Tile make_tile(const MessageBlockWeights& w, float* scratch) {
 CLOTH_INLINE void evaluate_tile(const MessageBlockWeights& w, const MessageBlockRows& rows,
                                 int first, int count, const Tile& tile) {
     const int d = w.width;
-    const float* panels = w.panels;
+    const float* panels = w.panels.float32;
     Layer layer{};
     layer.outputs = d;
     layer.bias = w.b1;
@@ -473,9 +473,11 @@ void backward(const MessageBlockWeights& w, const MessageBlockRows& rows, const 
     }
 }
 
+#include "gnn/model/message_kernels_bf16.inl"
+
 }  // namespace
 
 extern const MessageKernels CLOTH_KERNELS;
-const MessageKernels CLOTH_KERNELS = {forward, backward, dense};
+const MessageKernels CLOTH_KERNELS = {forward, backward, dense, forward_bf16, dense_bf16};
 
 }  // namespace cloth
