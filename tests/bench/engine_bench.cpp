@@ -8,15 +8,18 @@
 // loading included (run one benchmark alone to be sure that nothing is reused); weights, topology
 // and workspace are what stays. GFLOP/s of the matrix products (nothing else counts as work), and
 // `of_peak`, the share of the fused multiply-add peak that the same number of cores reached at the
-// start of this run. With LibTorch the same networks run there too, in the same process: compare
-// within one run.
+// start of this run: float32's peak, which bfloat16 can exceed. `error` of bfloat16 is the relative
+// RMS difference from float32 of the predicted accelerations. With LibTorch the same networks run
+// there too, in the same process: compare within one run.
 
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
+#include <functional>
 #include <memory>
 #include <random>
 
+#include "data/paths.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/learned_stepper.h"
 #include "gnn/model/message_block.h"
@@ -74,16 +77,22 @@ struct BlockData {
     std::vector<int> receivers, senders;
 };
 
-void edge_block(benchmark::State& state) {
-    BlockData data(static_cast<int>(state.range(0)));
+MessageBlockWeights weights_of(const BlockData& data) {
     MessageBlockWeights weights;
-    weights.width = weights.in[0] = static_cast<int>(state.range(0));
+    weights.width = weights.in[0] = static_cast<int>(data.d);
     weights.inputs = 1;
     weights.w1[0] = data.w1.data();
     weights.w2 = data.w2.data();
     weights.w3 = data.w3.data();
     weights.b1 = weights.b2 = weights.b3 = weights.beta = data.bias.data();
     weights.gamma = data.gamma.data();
+    return weights;
+}
+
+template <typename Buffer>
+void edge_block(benchmark::State& state) {
+    BlockData data(static_cast<int>(state.range(0)));
+    MessageBlockWeights weights = weights_of(data);
     MessageBlockRows rows;
     rows.rows = BlockData::rows;
     rows.x[0] = data.x.data();
@@ -93,7 +102,7 @@ void edge_block(benchmark::State& state) {
     rows.p[1] = data.q.data();
     rows.p_index[1] = data.senders.data();
     rows.sum_scale = 1e-6f;
-    AlignedBuffer panels(block_panel_count(weights));
+    Buffer panels(block_panel_count(weights));
     pack_block(weights, panels.data());
     weights.panels = panels.data();
     MessageBlockScratch scratch;
@@ -104,14 +113,35 @@ void edge_block(benchmark::State& state) {
     }
     report(state, 6.0 * BlockData::rows * static_cast<double>(data.d * data.d), peak(1));
 }
-BENCHMARK(edge_block)->Arg(16)->Arg(32)->Arg(64)->Arg(128)->Unit(benchmark::kMicrosecond);
+BENCHMARK_TEMPLATE(edge_block, AlignedBuffer)
+    ->RangeMultiplier(2)
+    ->Range(16, 128)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_TEMPLATE(edge_block, AlignedHalves)
+    ->RangeMultiplier(2)
+    ->Range(16, 128)
+    ->Unit(benchmark::kMicrosecond);
 
-void network(benchmark::State& state, const ModelConfig& config, int threads) {
+std::unique_ptr<Engine> make_engine(const Weights& weights, Precision precision, int threads) {
+    return std::make_unique<Engine>(std::make_shared<const EngineWeights>(weights, precision),
+                                    EngineSettings{threads});
+}
+
+double difference_from_float32(const Weights& weights, const NetworkInput& input,
+                               const Points& actual) {
+    Points expected;
+    make_engine(weights, Precision::float32, 2)->predict(input.graph, input.features, expected);
+    return (actual - expected).norm() / expected.norm();
+}
+
+void network(benchmark::State& state, const std::function<Weights()>& load, Precision precision,
+             int threads) {
+    const ModelConfig config = load().config;
     const NetworkInput input(moment(), config);
     std::unique_ptr<Engine> running;
     Points out;
     const double peak_mb = peak_memory_of([&] {
-        running = std::make_unique<Engine>(random_weights(config), EngineSettings{threads});
+        running = make_engine(load(), precision, threads);
         running->predict(input.graph, input.features, out);
     });
     Engine& engine = *running;
@@ -122,6 +152,21 @@ void network(benchmark::State& state, const ModelConfig& config, int threads) {
     state.counters["weights_MB"] = 1e-6 * static_cast<double>(memory.weights);
     state.counters["topology_MB"] = 1e-6 * static_cast<double>(memory.topology);
     state.counters["workspace_MB"] = 1e-6 * static_cast<double>(memory.workspace);
+    if (precision == Precision::bfloat16)
+        state.counters["error"] = difference_from_float32(load(), input, out);
+}
+
+/// engine/... and engine-bf16/..., on one thread and on two.
+void register_engine(const std::string& name, const std::function<Weights()>& load) {
+    for (const Precision precision : {Precision::float32, Precision::bfloat16})
+        for (const int threads : {1, 2}) {
+            const std::string engine = precision == Precision::float32 ? "engine/" : "engine-bf16/";
+            benchmark::RegisterBenchmark(
+                (engine + name + "/threads:" + std::to_string(threads)).c_str(),
+                [=](benchmark::State& state) { network(state, load, precision, threads); })
+                ->Unit(benchmark::kMillisecond)
+                ->UseRealTime();
+        }
 }
 
 /// One whole frame of the learned stepper by stage; refinement as shipped and none.
@@ -154,16 +199,15 @@ void register_networks() {
         for (const int width : {32, 64, 128}) {
             const ModelConfig config = config_of(variant, width);
             const std::string name = variant + "/" + std::to_string(width);
-            for (const int threads : {1, 2})
-                benchmark::RegisterBenchmark(
-                    ("engine/" + name + "/threads:" + std::to_string(threads)).c_str(),
-                    [=](benchmark::State& state) { network(state, config, threads); })
-                    ->Unit(benchmark::kMillisecond)
-                    ->UseRealTime();
+            register_engine(name, [=] { return random_weights(config); });
             register_torch(
                 "libtorch/" + name, config, [] { return &moment(); },
                 [](benchmark::State& state, double flops) { report(state, flops, peak(2)); });
         }
+    for (const char* name : {"baseline", "sampling", "reduction", "fast", "small"})
+        register_engine(std::string("shipped/") + name, [=] {
+            return Weights::load(asset_path(std::string("weights/") + name + ".safetensors"));
+        });
     for (const int refine : {0, 10})
         benchmark::RegisterBenchmark(
             ("frame/fast/32/refine:" + std::to_string(refine)).c_str(),
