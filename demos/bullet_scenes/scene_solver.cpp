@@ -21,12 +21,14 @@ StepperFactory quasi_newton(int iterations) {
 }
 
 StepperFactory network(const std::string& name, const std::string& folder) {
-    const size_t plus = name.find('+');
+    const NetworkName wanted(name);
+    if (wanted.torch) throw UsageError("solver " + name + ": here networks run in the engine only");
     LearnedClothSettings settings;
-    if (plus != std::string::npos)
-        settings.step.refine = whole_number("solver " + name, name.substr(plus + 1), 0, 100);
+    if (!wanted.as_shipped)
+        settings.step.refine = whole_number("solver " + name, wanted.refine, 0, 100);
     const auto weights = std::make_shared<const EngineWeights>(
-        Weights::load(weights_file(name.substr(0, plus), folder)));
+        Weights::load(weights_file(wanted.variant, folder)),
+        wanted.bfloat16 ? Precision::bfloat16 : Precision::float32);
     return [weights, settings](const Garment& garment) {
         return make_learned_cloth(garment, weights, settings);
     };

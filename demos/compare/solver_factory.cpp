@@ -108,32 +108,45 @@ std::string weights_folder(const std::string& folder) {
     return folder.empty() ? asset_path("weights") : folder;
 }
 
+std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weights& weights,
+                                          const SolverSettings& settings) {
+    if (network.torch) return settings.torch(weights);
+    const Precision precision = network.bfloat16 ? Precision::bfloat16 : Precision::float32;
+    return std::make_shared<Engine>(std::make_shared<const EngineWeights>(weights, precision),
+                                    EngineSettings{settings.threads});
+}
+
 std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
     const Integrator integrator = take_integrator(name);
-    const bool torch = starts_with(name, "torch-");
-    const std::string network = torch ? name.substr(6) : name;
-    const std::string variant = network.substr(0, network.find('+'));
+    const NetworkName network(name);
     LearnedStepperSettings learned;
     learned.potential.integrator = integrator;
     learned.potential.self_contact = scene.self_contact();
-    if (variant != network) learned.refine = iterations_of(network, variant + "+", 0, 100);
-    const Weights weights = Weights::load(weights_file(variant, settings.weights));
-    if (torch && !settings.torch)
+    if (!network.as_shipped)
+        learned.refine =
+            iterations_of(network.variant + "+" + network.refine, network.variant + "+", 0, 100);
+    const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
+    if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
-    std::shared_ptr<Predictor> predictor;
-    if (torch)
-        predictor = settings.torch(weights);
-    else
-        predictor = std::make_shared<Engine>(weights, EngineSettings{settings.threads});
-    auto stepper = std::make_unique<LearnedStepper>(scene.garment(), std::move(predictor), learned);
-    if (variant != network) return stepper;  // NAME+K: exactly that in every frame
+    auto stepper = std::make_unique<LearnedStepper>(
+        scene.garment(), make_predictor(network, weights, settings), learned);
+    if (!network.as_shipped) return stepper;  // NAME+K: exactly that in every frame
     GuardSettings guard;
     guard.solver.potential.self_contact = scene.self_contact();
     return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), guard);
 }
 
 }  // namespace
+
+NetworkName::NetworkName(const std::string& name)
+    : torch(starts_with(name, "torch-")), bfloat16(starts_with(name, "bf16-")) {
+    const std::string network = torch || bfloat16 ? name.substr(name.find('-') + 1) : name;
+    const size_t plus = network.find('+');
+    variant = network.substr(0, plus);
+    as_shipped = plus == std::string::npos;
+    if (!as_shipped) refine = network.substr(plus + 1);
+}
 
 std::vector<std::string> networks_in(const std::string& folder) {
     std::vector<std::string> names;

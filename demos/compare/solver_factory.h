@@ -38,12 +38,22 @@ struct SolverSettings {
 /// | VARIANT            | the network VARIANT.safetensors with error control, guarded   |
 /// | VARIANT+K          | the network and exactly K quasi-Newton iterations             |
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
+/// | bf16-VARIANT[+K]   | the same, in the engine with products in bfloat16             |
 ///
 /// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
 ///
 /// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);
+
+/// What the name of a network says: [torch-|bf16-]VARIANT[+K].
+struct NetworkName {
+    explicit NetworkName(const std::string& name);
+    bool torch, bfloat16;
+    std::string variant;
+    std::string refine;  ///< K as it was written
+    bool as_shipped;     ///< no +K
+};
 
 /// The networks whose weights lie in the folder (empty: the committed ones), in alphabetical order.
 std::vector<std::string> networks_in(const std::string& folder);

@@ -28,12 +28,10 @@ SolverFamily bullet_family(const std::string& setting) {
 }
 
 SolverFamily network_family(const std::string& name) {
-    const std::optional<std::string> torch = after(name, "torch-");
-    const std::string network = torch.value_or(name);
-    const size_t plus = network.find('+');
-    const std::string refine = plus == std::string::npos ? "shipped" : network.substr(plus);
-    return {Kind::network, network.substr(0, plus) + (torch ? ", LibTorch" : ""), refine,
-            "iterations"};
+    const NetworkName network(name);
+    const char* backend = network.torch ? ", LibTorch" : network.bfloat16 ? ", bfloat16" : "";
+    return {Kind::network, network.variant + backend,
+            network.as_shipped ? "shipped" : "+" + network.refine, "iterations"};
 }
 
 }  // namespace
@@ -63,13 +61,12 @@ std::optional<NetworkFacts> network_facts(std::string solver, const SolverSettin
     take_bdf2(solver);
     const SolverFamily family = solver_family(solver);
     if (family.kind != Kind::network) return std::nullopt;
-    const std::optional<std::string> torch = after(solver, "torch-");
-    const std::string network = torch.value_or(solver);
-    const size_t plus = network.find('+');
-    const std::string file = weights_file(network.substr(0, plus), settings.weights);
+    const NetworkName network(solver);
+    const std::string file = weights_file(network.variant, settings.weights);
     std::optional<int> refine;
-    if (plus != std::string::npos) refine = std::stoi(network.substr(plus + 1));
-    return NetworkFacts{torch ? "libtorch" : "engine", Weights::load(file).config.width, refine};
+    if (!network.as_shipped) refine = std::stoi(network.refine);
+    const char* backend = network.torch ? "libtorch" : network.bfloat16 ? "engine-bf16" : "engine";
+    return NetworkFacts{backend, Weights::load(file).config.width, refine};
 }
 
 }  // namespace cloth

@@ -21,7 +21,7 @@ SolverFamily solver_family(std::string solver);
 
 /// What a network is run by and is.
 struct NetworkFacts {
-    std::string backend;        ///< engine, libtorch
+    std::string backend;        ///< engine, engine-bf16, libtorch
     int width;                  ///< of the latents
     std::optional<int> refine;  ///< quasi-Newton iterations after it; none: as shipped
 };

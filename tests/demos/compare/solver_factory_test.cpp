@@ -40,6 +40,16 @@ TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
 }
 
+TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {
+    const NetworkName plain("fast_16"), torch("torch-fast+0"), rounded("bf16-fast+12");
+    EXPECT_TRUE(plain.as_shipped && !plain.torch && !plain.bfloat16);
+    EXPECT_TRUE(torch.torch && !torch.as_shipped && rounded.bfloat16);
+    EXPECT_EQ(plain.variant, "fast_16");
+    EXPECT_EQ(torch.variant, "fast");
+    EXPECT_EQ(rounded.refine, "12");
+    EXPECT_NO_THROW(make_solver("bf16-fast+0", FreeSheet(), {}));
+}
+
 TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
     for (const std::string name : {"xpbd", "xpbd-", "xpbd-0", "xpbd-1001", "xpbd-20x", "xpbd--1",
                                    "quasi-newtons", "quasi-newton-", "bullet-fast"})

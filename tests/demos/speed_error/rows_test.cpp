@@ -89,6 +89,9 @@ TEST(SolverFamily, NamesSayFamilyAndSetting) {
     EXPECT_EQ(solver_family("fast").setting, "shipped");
     EXPECT_EQ(solver_family("torch-fast_16+3").name, "fast_16, LibTorch");
     EXPECT_EQ(solver_family("torch-fast_16+3").setting, "+3");
+    EXPECT_EQ(solver_family("bf16-fast").name, "fast, bfloat16");
+    EXPECT_EQ(solver_family("bf16-fast+3-bdf2").name, "fast, bfloat16, BDF2");
+    EXPECT_EQ(solver_family("bf16-fast+3").setting, "+3");
 }
 
 TEST(SpeedErrorPlots, HaveEveryFamilyEverySettingAndEveryFailure) {
