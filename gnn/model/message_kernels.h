@@ -26,7 +26,7 @@ extern const MessageKernels portable_kernels;
 extern const MessageKernels avx2_kernels, avx512_kernels, avx512_bf16_kernels;
 #endif
 
-constexpr int kernel_lanes = 16;  ///< numbers that are worked on together: every width's divisor
+constexpr int kernel_lanes = 16;  ///< of the widest instructions: every width's divisor
 constexpr int panel_width = 32;   ///< outputs of a panel; the last one may have 16
 constexpr int tile_rows = 48;     ///< rows whose temporaries stay in cache
 

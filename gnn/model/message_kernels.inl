@@ -3,8 +3,9 @@
 // their own -m options. Everything is internal to the file and free of the standard library, so
 // that no function compiled for a newer processor can be picked by the linker for an older one.
 //
-// BLOCK x COLUMNS x 16 sums are kept in registers: 8 x 2 fill 16 of the 32 registers of AVX-512 and
-// need 10 loads for 16 multiply-adds, 6 x 1 (two registers each) 12 of the 16 of AVX2.
+// BLOCK x COLUMNS registers hold sums: 8 x 2 fill 16 of the 32 registers of AVX-512 and need 10 loads
+// for 16 multiply-adds, 6 x 2 fill 12 of the 16 of AVX2, 4 x 2 half of the 16 of SSE. A vector is one
+// register: GCC moves arrays of wider ones through memory, at a tenth of the speed.
 
 #if defined(__AVX512BF16__) || (defined(__AVX2__) && !defined(__AVX512F__))
 #include <immintrin.h>
@@ -17,17 +18,17 @@ namespace {
 
 #define CLOTH_INLINE inline __attribute__((always_inline))
 
-typedef float Lanes __attribute__((vector_size(64), aligned(4), may_alias));
-
 #if defined(__AVX512F__)
-constexpr int block = 8, columns = 2;
+constexpr int lanes = 16, block = 8, columns = 2;
 #elif defined(__AVX2__)
-constexpr int block = 6, columns = 1;
+constexpr int lanes = 8, block = 6, columns = 2;
 #else
-constexpr int block = 2, columns = 1;
+constexpr int lanes = 4, block = 4, columns = 2;
 #endif
+typedef float Lanes __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
+static_assert(kernel_lanes % lanes == 0, "a row is whole vectors");
+
 constexpr float norm_epsilon = 1e-5f;  // as LibTorch's LayerNorm
-constexpr int lanes = kernel_lanes;
 static_assert(tile_rows % lanes == 0 && tile_rows % block == 0, "tiles are whole blocks");
 
 CLOTH_INLINE const Lanes& load(const float* p) {
@@ -76,7 +77,7 @@ CLOTH_INLINE void multiply_add(int k, const float* const (&a)[Block], const floa
     }
 }
 
-/// Outputs [column, column + 16 Columns) of rows [first, first + Block).
+/// Outputs [column, column + lanes Columns) of rows [first, first + Block).
 template <int Block, int Columns>
 CLOTH_INLINE void layer_block(const Layer& layer, int first, int column, float* y) {
     const int d = layer.outputs;
@@ -129,7 +130,8 @@ CLOTH_INLINE Lanes shuffled_sum(Lanes a, Lanes b, Mask first, Mask second) {
 }
 #endif
 
-/// Sums of 16 vectors, one per lane. Every vector is summed in the same order of its lanes.
+/// Sums of as many vectors as one has lanes, one per lane. Every vector is summed in the same order
+/// of its lanes.
 CLOTH_INLINE Lanes sums_of(const Lanes (&t)[lanes]) {
 #if defined(__AVX512F__)
     // Within quarters of a vector: pairs of vectors, then pairs of pairs, one instruction each.
@@ -147,22 +149,9 @@ CLOTH_INLINE Lanes sums_of(const Lanes (&t)[lanes]) {
     return shuffled_sum(shuffled_sum(quad[0], quad[1], even, odd),
                         shuffled_sum(quad[2], quad[3], even, odd), even, odd);
 #elif defined(__AVX2__)
-    Lanes result;
-    for (int half = 0; half < 2; ++half) {
-        __m256 sum[8];
-        for (int i = 0; i < 8; ++i) {
-            const float* v = reinterpret_cast<const float*>(&t[8 * half + i]);
-            sum[i] = _mm256_add_ps(_mm256_loadu_ps(v), _mm256_loadu_ps(v + 8));
-        }
-        const __m256 a = _mm256_hadd_ps(_mm256_hadd_ps(sum[0], sum[1]),
-                                        _mm256_hadd_ps(sum[2], sum[3]));
-        const __m256 b = _mm256_hadd_ps(_mm256_hadd_ps(sum[4], sum[5]),
-                                        _mm256_hadd_ps(sum[6], sum[7]));
-        const __m256 total = _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20),
-                                           _mm256_permute2f128_ps(a, b, 0x31));
-        _mm256_storeu_ps(reinterpret_cast<float*>(&result) + 8 * half, total);
-    }
-    return result;
+    const __m256 a = _mm256_hadd_ps(_mm256_hadd_ps(t[0], t[1]), _mm256_hadd_ps(t[2], t[3]));
+    const __m256 b = _mm256_hadd_ps(_mm256_hadd_ps(t[4], t[5]), _mm256_hadd_ps(t[6], t[7]));
+    return _mm256_add_ps(_mm256_permute2f128_ps(a, b, 0x20), _mm256_permute2f128_ps(a, b, 0x31));
 #else
     Lanes result{};
     for (int r = 0; r < lanes; ++r) {
@@ -174,7 +163,7 @@ CLOTH_INLINE Lanes sums_of(const Lanes (&t)[lanes]) {
 #endif
 }
 
-/// Mean and 1 / deviation of 16 rows.
+/// Mean and 1 / deviation of as many rows as there are lanes.
 CLOTH_INLINE void norm_statistics(int d, const float* y, float* mean, float* inverse) {
     const float share = 1.0f / static_cast<float>(d);
     Lanes t[lanes];
@@ -309,7 +298,7 @@ CLOTH_INLINE void relu_backward(int count, const float* activation, float* gradi
     }
 }
 
-/// C (Block rows, leading ldc) = A (leading lda) B (k x *, leading ldb), 16 Columns outputs.
+/// C (Block rows, leading ldc) = A (leading lda) B (k x *, leading ldb), lanes Columns outputs.
 template <int Block, int Columns>
 CLOTH_INLINE void product_block(int k, const float* a, int lda, const float* b, int ldb, float* c,
                                 int ldc) {

@@ -1,13 +1,13 @@
 // The forward pass on bfloat16, included by message_kernels.inl. A product works on pairs of inputs:
-// an activation pair is one 32-bit number that is broadcast, a row of a panel holds the pairs of 16
+// an activation pair is one 32-bit number that is broadcast, a row of a panel holds the pairs of its
 // outputs. Without AVX512-BF16 the same numbers are widened and multiplied in float32.
 //
 // Rows are rounded once when they are gathered; each layer writes what the next one reads.
 
-/// 16 pairs of bfloat16, the even input in the lower half.
-typedef unsigned Pairs __attribute__((vector_size(64), aligned(4), may_alias));
+/// Pairs of bfloat16, the even input in the lower half.
+typedef unsigned Pairs __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
 typedef unsigned Pair __attribute__((may_alias));
-typedef unsigned short Halves __attribute__((vector_size(32), aligned(2), may_alias));
+typedef unsigned short Halves __attribute__((vector_size(2 * lanes), aligned(2), may_alias));
 
 CLOTH_INLINE Lanes add_products(Lanes sum, Pair a, const Pairs& b) {
 #if defined(__AVX512BF16__)
@@ -25,7 +25,7 @@ CLOTH_INLINE Lanes add_products(Lanes sum, Pair a, const Pairs& b) {
 #endif
 }
 
-/// Rounds 16 numbers to nearest, ties to even.
+/// Rounds numbers to nearest, ties to even.
 CLOTH_INLINE Halves rounded(const Lanes& values) {
 #if defined(__AVX512BF16__)
     return reinterpret_cast<Halves>(_mm512_cvtneps_pbh(reinterpret_cast<__m512>(values)));
