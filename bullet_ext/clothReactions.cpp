@@ -229,8 +229,8 @@ void ClothReactions::findOwners(const ClothTick& tick) {
 void ClothReactions::findImpulses(const ClothTick& tick) {
     const double h = tick.length;
     m_impulses.setZero(tick.to.x.rows(), 3);
-    const bool known = tick.stepper.internal_forces(tick.to.x, m_internal);
-    if (known) m_internal *= m_mass_ratio;
+    m_internal_known = tick.stepper.internal_forces(tick.to.x, m_internal);
+    if (m_internal_known) m_internal *= m_mass_ratio;
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         const int owner = m_owner[static_cast<size_t>(i)];
         const double mass = massOf(tick, i);
@@ -240,7 +240,7 @@ void ClothReactions::findImpulses(const ClothTick& tick) {
         if (tick.boundary.accelerations.size())
             velocity -= h * tick.boundary.accelerations.row(i).transpose();
         m_impulses.row(owner) += mass * velocity;
-        if (known) m_impulses.row(owner) -= h * m_internal.row(i);
+        if (m_internal_known) m_impulses.row(owner) -= h * m_internal.row(i);
     }
     for (int i = 0; i < m_body.m_nodes.size(); ++i)
         if (m_holder[static_cast<size_t>(i)]) charge(tick, i);
@@ -253,6 +253,7 @@ void ClothReactions::charge(const ClothTick& tick, int node) {
     const bool anchored = tick.garment.is_pinned()[static_cast<size_t>(node)] != 0;
     const Vec3 arm = Vec3(tick.to.x.row(node)) - centreOf(holder);
     const Vec3 impulse = -m_impulses.row(node).transpose();
+    if (anchored && !m_internal_known) return;
     if (anchored) {
         account.taken.head<3>() += impulse;
         account.taken.tail<3>() += arm.cross(impulse);

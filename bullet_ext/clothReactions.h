@@ -46,6 +46,9 @@ struct ClothTick {
 /// node i. Nodes that the body holds have w = 1. Cloth that an anchor pulls follows as far as a
 /// stretch wave runs in the tick: w falls from 1 at the anchor, whose motion counts, to 0 there.
 /// Without that a light body on stiff cloth would be thrown about.
+///
+/// Steppers without internal_forces(), such as XPBD, push what touches the cloth; what is anchored
+/// to it feels nothing: the balance of a single node would be all noise.
 class ClothReactions {
  public:
     explicit ClothReactions(btSoftBody& body) : m_body(body) {}
@@ -111,6 +114,7 @@ class ClothReactions {
     Points m_touch;     ///< |V| x 3 (m): where the node, or its edge or face, touches
     Points m_impulses;  ///< |V| x 3 (N s): from outside
     Points m_internal;  ///< |V| x 3 (N)
+    bool m_internal_known = false;
     Vec3 m_last_impulse = Vec3::Zero();
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bullet_ext/softBodyGarment.h"
+#include "gnn/physics/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
 
@@ -135,6 +136,20 @@ TEST(ClothReactions, ALightBoxOnHeavyClothDoesNotRunAway) {
         EXPECT_LT(fastest, 8.0) << c.fixed_dt << " " << c.rate;
         EXPECT_LT(box->getLinearVelocity().length(), 6.0f) << c.fixed_dt << " " << c.rate;
     }
+}
+
+// Its internal forces are unknown: better no reaction than a wrong one.
+TEST(ClothReactions, ABoxAnchoredToXpbdClothFeelsNothingOfIt) {
+    btGnnSoftBodySolver solver(
+        [](const Garment& garment) { return std::make_unique<XpbdStepper>(garment); });
+    World world(&solver);
+    btRigidBody* box = world.add(new btBoxShape({0.1f, 0.1f, 0.1f}), {-0.5f, 0, -0.6f}, false, 1);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 7));
+    cloth->appendAnchor(0, box, true);
+    cloth->appendAnchor(6, box, true);
+    world.step(1.0 / 60.0, 60);
+    EXPECT_NEAR(box->getLinearVelocity().y(), -9.81, 0.01);
+    EXPECT_LT(node(*cloth, 24).y(), -1.0);
 }
 
 // The middle of the patch and a corner, which weighs a fraction of the middle.
