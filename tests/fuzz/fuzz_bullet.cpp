@@ -343,7 +343,8 @@ void WorldMeddler::move_rigid_body(btRigidBody& body) {
     if (m_random.chance(0.1)) return animate(body);
     if (m_random.chance(0.3)) return body.setLinearVelocity(vector(m_random, 3));
     btTransform to = random_transform(m_random, 0.7);
-    if (m_random.chance(0.05)) to.setOrigin(numbers(m_random, 1));
+    const btVector3 spoilt = m_random.chance(0.05) ? numbers(m_random, 1) : to.getOrigin();
+    if (!body.isStaticObject()) to.setOrigin(spoilt);  // else it spoils the broadphase
     body.setWorldTransform(to);
     body.activate();
 }
