@@ -32,9 +32,9 @@ std::string speed_error_usage() {
            "                       sub-steps), quasi-newton-K, newton-K (K iterations),\n"
            "                       reference, and networks: NAME+K (K refinement iterations),\n"
            "                       NAME (as shipped), torch-NAME+K (by LibTorch instead of the\n"
-           "                       engine), bf16-NAME+K (products in bfloat16). Default:\n"
-           "                       every family at several settings, with all networks of the\n"
-           "                       weights folder\n"
+           "                       engine), bf16-NAME+K (products in bfloat16); -bdf2 at the\n"
+           "                       end: by BDF2. Default: every family at several settings,\n"
+           "                       with all networks of the weights folder\n"
            "  --relative-to NAME   solver whose time the others' is divided by, frame by frame\n"
            "                       (default quasi-newton-3)\n"
            "  --weights DIR        folder with NAME.safetensors (default: the committed ones)\n"
@@ -104,10 +104,13 @@ std::vector<std::string> default_solvers(const std::vector<std::string>& network
         solvers.push_back(std::string("xpbd-") + substeps);
     for (const char* iterations : {"1", "3", "10", "30"})
         solvers.push_back(std::string("quasi-newton-") + iterations);
+    for (const char* iterations : {"3", "10"})
+        solvers.push_back(std::string("quasi-newton-") + iterations + "-bdf2");
     for (const char* solver : {"newton-1", "newton-3", "newton-10", "reference"})
         solvers.push_back(solver);
     for (const std::string& network : networks) {
-        for (const char* refine : {"+0", "+1", "+3", "+10"}) solvers.push_back(network + refine);
+        for (const char* refine : {"+0", "+1", "+3", "+10", "+10-bdf2"})
+            solvers.push_back(network + refine);
         if (torch) solvers.push_back("torch-" + network + "+0");
     }
     return solvers;
