@@ -50,13 +50,25 @@ std::string colour_of(Kind kind, size_t k) {
     return network[k % network.size()];
 }
 
-/// One colour per family; a network has the same one in both backends.
+/// What a family is called before ", LibTorch", ", bfloat16" or ", BDF2".
+std::string plain_name(const std::string& name) {
+    return name.substr(0, name.find(", "));
+}
+
+/// What it is called after that, such as "BDF2 "; Bullet's time steps are no variety.
+std::string variety(const SolverFamily& family) {
+    const size_t comma = family.name.find(", ");
+    if (comma == std::string::npos || family.kind == Kind::bullet) return "";
+    return family.name.substr(comma + 2) + " ";
+}
+
+/// One colour per family; its varieties have the same one, and dashes.
 std::vector<std::string> colours_of(const std::vector<Family>& families) {
     std::array<std::vector<std::string>, 5> seen;  // names of each kind so far
     std::vector<std::string> colours;
     for (const Family& family : families) {
-        const std::string name =
-            family.family.name.substr(0, family.family.name.find(", LibTorch"));
+        const bool bullet = family.family.kind == Kind::bullet;
+        const std::string name = bullet ? family.family.name : plain_name(family.family.name);
         std::vector<std::string>& names = seen[static_cast<size_t>(family.family.kind)];
         const auto at = std::find(names.begin(), names.end(), name);
         colours.push_back(colour_of(family.family.kind, static_cast<size_t>(at - names.begin())));
@@ -70,17 +82,13 @@ struct Measure {
     double SolverRow::*value;
 };
 
-bool is_torch(const std::string& solver) {
-    return solver.rfind("torch-", 0) == 0;
-}
-
 /// A family's line through all settings, then its points: discs, and crosses for failed rollouts.
 void add_series(const Family& family, const Measure& measure, const std::string& colour,
                 std::vector<Series>& series) {
     Series line, discs, crosses;
     line.name = family.family.name + ": " + family.family.counts;
     line.colour = discs.colour = crosses.colour = colour;
-    line.dashed = is_torch(family.rows.front()->solver);
+    line.dashed = !variety(family.family).empty();
     discs.style = crosses.style = SeriesStyle::points;
     crosses.marker = Marker::cross;
     for (const SolverRow* row : family.rows) {
@@ -90,8 +98,7 @@ void add_series(const Family& family, const Measure& measure, const std::string&
         line.y.push_back(y);
         points.x.push_back(x);
         points.y.push_back(y);
-        points.texts.push_back((line.dashed ? "LibTorch " : "") +
-                               solver_family(row->solver).setting);
+        points.texts.push_back(variety(family.family) + solver_family(row->solver).setting);
     }
     series.insert(series.end(), {line, discs, crosses});
 }
