@@ -12,7 +12,7 @@ std::string bullet_scenes_usage() {
            "  --list            name the scenes\n"
            "  --scene A,B,...   only these\n"
            "  --solvers A,B     bullet, quasi-newton-K, or a network NAME[+K]; default "
-           "bullet,fast\n"
+           "bullet,small\n"
            "  --rates A,B,...   steps per second, default 60\n"
            "  --seconds N       of each run, default 10\n"
            "  --reference NAME  solver whose last shape is right, default quasi-newton-30; none\n"

@@ -7,7 +7,7 @@ namespace cloth {
 
 struct BulletScenesOptions {
     std::vector<std::string> scenes;  ///< empty: all
-    std::vector<std::string> solvers = {"bullet", "fast"};
+    std::vector<std::string> solvers = {"bullet", "small"};
     std::vector<int> rates = {60};  ///< (Hz)
     int seconds = 10;               ///< 1 to 600
     bool list = false;

@@ -14,7 +14,7 @@ namespace cloth {
 
 /// How a scene is run.
 struct SceneRunSettings {
-    std::string solver = "fast";  ///< a name of SceneSolvers
+    std::string solver = "small";  ///< a name of SceneSolvers
     int rate = 60;                ///< steps per second, 24 to 480
     double seconds = 10.0;
     int pictures_per_second = 0;  ///< 0: nothing is recorded

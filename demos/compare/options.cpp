@@ -18,10 +18,12 @@ std::string compare_usage() {
            "  --motion NAME          01_01, 01_03, Boxing_Toes, a clip's number or a BVH file\n"
            "  --fabric soft|real     soft cotton of 33 N/m, or cotton as measured, 5 kN/m\n"
            "  --solvers A,B,...      bullet, bullet-fine, bullet-K (K iterations), reference,\n"
-           "                         quasi-newton-K, xpbd-N (N substeps), and networks: baseline,\n"
-           "                         sampling, reduction, fast, as shipped (10 refinement\n"
-           "                         iterations, fast motion in sub-steps), or each with +K for\n"
-           "                         exactly K refinement iterations (+0: the network alone);\n"
+           "                         quasi-newton, quasi-newton-K (K iterations), xpbd-N (N\n"
+           "                         substeps), and networks: small, fast, baseline, sampling,\n"
+           "                         reduction, as shipped (10 refinement iterations or more,\n"
+           "                         fast motion in sub-steps), or each with +K for exactly K\n"
+           "                         refinement iterations (+0: the network alone); -bdf2 at\n"
+           "                         the end: by BDF2 instead of backward Euler;\n"
            "                         bf16-NAME: its products in bfloat16\n"
            "  --frames N             frames of 1/30 s of the motion (default 90; 0: all)\n"
            "  --reference-frames N   frames with references and one-step errors (default 30; 0: "
@@ -37,8 +39,8 @@ std::string compare_usage() {
 
 CompareOptions parse_compare_options(const std::vector<std::string>& arguments) {
     CompareOptions options;
-    options.solvers = {"bullet",          "bullet-fine", "reference", "quasi-newton-3",
-                       "quasi-newton-10", "baseline",    "fast",      "fast+0"};
+    options.solvers = {"bullet",       "bullet-fine", "reference", "quasi-newton-10",
+                       "quasi-newton", "xpbd-40",     "small",     "small+0"};
     std::map<std::string, std::string*> texts = {
         {"--garment", &options.garment}, {"--motion", &options.motion},
         {"--fabric", &options.fabric},   {"--weights", &options.weights},

@@ -39,7 +39,7 @@ std::string hard_cases_usage() {
 
 std::vector<std::string> default_hard_case_steppers() {
     return {"reference", "quasi-newton", "quasi-newton-10", "quasi-newton-3x4",
-            "xpbd-40",   "fast",         "fast+0",          "bullet-fine"};
+            "xpbd-40",   "small",        "small+0",         "bullet-fine"};
 }
 
 static double positive_number(const std::string& option, const std::string& text) {
