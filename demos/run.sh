@@ -14,6 +14,6 @@ cmake --build --preset release
 out="out/compare"
 echo "== T-shirt on motion 01_01: comparing solvers"
 build/release/demos/compare --garment tshirt --motion 01_01 --frames 90 \
-  --solvers bullet,bullet-fine,reference,quasi-newton-10,quasi-newton,xpbd-40,small,small+0 --out "$out" "$@"
+  --solvers bullet,bullet-fine,quasi-newton-10,quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+0 --out "$out" "$@"
 echo "video:  $PWD/$out/comparison.mp4"
 echo "report: $PWD/$out/report.html"

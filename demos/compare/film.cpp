@@ -32,8 +32,7 @@ nlohmann::json at(const FilmPanel& panel, const char* series, size_t frame) {
 
 std::string caption(const FilmPanel& panel, size_t frame) {
     const auto& ms = panel.measurement->at("ms_per_frame").at("median");
-    const std::string stepper = panel.measurement->at("stepper").get<std::string>();
-    std::string text = (panel.name.find('+') == std::string::npos ? stepper : panel.name) + "\n";
+    std::string text = panel.name + "\n";
     text += ms.is_null() ? "no frame" : format("%.1f ms per frame", ms.get<double>());
     const auto error = at(panel, "rmse_mm", frame);
     if (!error.is_null()) text += format("\noff by %.1f mm", error.get<double>());

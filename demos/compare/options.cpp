@@ -39,8 +39,8 @@ std::string compare_usage() {
 
 CompareOptions parse_compare_options(const std::vector<std::string>& arguments) {
     CompareOptions options;
-    options.solvers = {"bullet",       "bullet-fine", "reference", "quasi-newton-10",
-                       "quasi-newton", "xpbd-40",     "small",     "small+0"};
+    options.solvers = {"bullet",       "bullet-fine", "quasi-newton-10", "quasi-newton-10-bdf2",
+                       "quasi-newton", "xpbd-40",     "small",           "small+0"};
     std::map<std::string, std::string*> texts = {
         {"--garment", &options.garment}, {"--motion", &options.motion},
         {"--fabric", &options.fabric},   {"--weights", &options.weights},
