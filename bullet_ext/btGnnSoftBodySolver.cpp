@@ -13,6 +13,7 @@
 
 using cloth::ArgumentError;
 using cloth::Garment;
+using cloth::isFinite;
 
 namespace {
 
@@ -25,19 +26,8 @@ bool hasFiniteMasses(const btSoftBody& body) {
 
 bool hasFiniteNodes(const btSoftBody& body) {
     for (int i = 0; i < body.m_nodes.size(); ++i)
-        if (!cloth::toVec3(body.m_nodes[i].m_x).allFinite() ||
-            !cloth::toVec3(body.m_nodes[i].m_v).allFinite())
-            return false;
+        if (!isFinite(body.m_nodes[i].m_x) || !isFinite(body.m_nodes[i].m_v)) return false;
     return hasFiniteMasses(body);
-}
-
-bool isFinite(const btVector3& low, const btVector3& high) {
-    return cloth::toVec3(low).allFinite() && cloth::toVec3(high).allFinite();
-}
-
-bool isFinite(const btTransform& pose) {
-    return cloth::toVec3(pose.getOrigin()).allFinite() &&
-           cloth::toMatrix(pose.getBasis()).allFinite();
 }
 
 /// Bullet's distance field numbers its cells with ints, unchecked.
@@ -52,8 +42,8 @@ bool fitsDistanceField(const btSoftBody& body) {
 /// beside them; and Bullet disables the body for good.
 void mendBounds(btSoftBody& body) {
     btBroadphaseProxy* proxy = body.getBroadphaseHandle();
-    const bool spoilt = proxy && !isFinite(proxy->m_aabbMin, proxy->m_aabbMax);
-    if (!spoilt && isFinite(body.m_bounds[0], body.m_bounds[1])) return;
+    const bool spoilt = proxy && !(isFinite(proxy->m_aabbMin) && isFinite(proxy->m_aabbMax));
+    if (!spoilt && isFinite(body.m_bounds[0]) && isFinite(body.m_bounds[1])) return;
     const btVector3 zero(0, 0, 0);
     body.m_bounds[0] = body.m_bounds[1] = zero;
     if (proxy && body.m_worldInfo->m_broadphase)

@@ -34,10 +34,6 @@ Points transformed(const Pose& pose, const Points& local) {
     return (local * pose.linear().transpose()).rowwise() + pose.translation().transpose();
 }
 
-bool isFinite(const btTransform& pose) {
-    return toVec3(pose.getOrigin()).allFinite() && toMatrix(pose.getBasis()).allFinite();
-}
-
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();

@@ -27,6 +27,21 @@ inline Eigen::Matrix3d toMatrix(const btMatrix3x3& m) {
     return matrix;
 }
 
+inline bool isFinite(const btVector3& v) {
+    return toVec3(v).allFinite();
+}
+
+inline bool isFinite(const btTransform& pose) {
+    return isFinite(pose.getOrigin()) && toMatrix(pose.getBasis()).allFinite();
+}
+
+/// Whether Bullet's floats can hold the numbers (m, m/s, N s) and their squares.
+template <typename Derived>
+bool fitsFloats(const Eigen::MatrixBase<Derived>& numbers) {
+    constexpr double most = 1e15;
+    return numbers.allFinite() && (numbers.size() == 0 || numbers.cwiseAbs().maxCoeff() < most);
+}
+
 /// crossMatrix(r) * v is r x v.
 inline Eigen::Matrix3d crossMatrix(const Vec3& r) {
     Eigen::Matrix3d matrix;

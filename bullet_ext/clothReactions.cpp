@@ -346,8 +346,7 @@ void ClothReactions::apply(double h, const std::vector<NearSolid>& near) {
         const Vector6 now = part * account.planned;
         account.planned -= now;
         account.plan_time = std::max(0.0, account.plan_time - h);
-        constexpr double kMost = 1e15;  // N s; Bullet's floats end not far from there
-        if (!isDynamic(*body) || !(now.cwiseAbs().maxCoeff() < kMost)) continue;
+        if (!isDynamic(*body) || !fitsFloats(now)) continue;
         body->applyCentralImpulse(toBullet(Vec3(now.head<3>())));
         body->applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
         m_last_impulse += now.head<3>();

@@ -44,8 +44,7 @@ void pullSoftAnchors(btSoftBody& body, const Garment& garment, const ClothState&
         const Vec3 impulse =
             share *
             inverseMass(rigid, inverse_mass, arm).ldlt().solve(drift + (hardness / length) * gap);
-        constexpr double kMost = 1e15;  // N s; Bullet's floats end not far from there
-        if (!(impulse.cwiseAbs().maxCoeff() < kMost)) continue;
+        if (!fitsFloats(impulse)) continue;
         if (accelerations.size() == 0) accelerations = Points::Zero(state.x.rows(), 3);
         accelerations.row(i) += (inverse_mass / length) * impulse.transpose();
         rigid.activate();

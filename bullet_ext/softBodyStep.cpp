@@ -12,10 +12,6 @@ namespace cloth {
 
 namespace {
 
-bool finite(const btVector3& v) {
-    return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
-}
-
 bool differs(const btVector3& v, const float* written) {
     return v.x() != written[0] || v.y() != written[1] || v.z() != written[2];
 }
@@ -26,12 +22,6 @@ void store(const btVector3& v, float* written) {
 
 btVector3 restored(const float* written) {
     return {written[0], written[1], written[2]};
-}
-
-/// Whether Bullet's floats can hold the numbers and their squares.
-bool fitsFloats(const Points& points) {
-    constexpr double kMost = 1e15;  // m, m/s
-    return points.allFinite() && (points.size() == 0 || points.cwiseAbs().maxCoeff() < kMost);
 }
 
 struct Box {
@@ -130,8 +120,8 @@ int SoftBodyStep::restoreNodes() {
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         btSoftBody::Node& node = m_body.m_nodes[i];
         const float* written = &m_written[static_cast<size_t>(i) * 6];
-        if (!finite(node.m_f)) node.m_f.setZero();
-        if (finite(node.m_x) && finite(node.m_v)) continue;
+        if (!isFinite(node.m_f)) node.m_f.setZero();
+        if (isFinite(node.m_x) && isFinite(node.m_v)) continue;
         node.m_x = restored(written);
         node.m_v = restored(written + 3);
         ++count;
@@ -166,7 +156,7 @@ void SoftBodyStep::takeForces() {
     takeWind();
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         btSoftBody::Node& node = m_body.m_nodes[i];
-        if (node.m_im > 0 && finite(node.m_f)) m_impulse.row(i) += m_h * toVec3(node.m_f);
+        if (node.m_im > 0 && isFinite(node.m_f)) m_impulse.row(i) += m_h * toVec3(node.m_f);
         node.m_f.setZero();
     }
 }
@@ -186,7 +176,7 @@ void SoftBodyStep::takePins() {
         const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
         const auto pin = std::lower_bound(pins.begin(), pins.end(), node);
         const btVector3 place = anchor.m_body->getWorldTransform() * anchor.m_local;
-        if (pin != pins.end() && *pin == node && finite(place))
+        if (pin != pins.end() && *pin == node && isFinite(place))
             m_pins_after.row(pin - pins.begin()) = toVec3(place);
     }
 }

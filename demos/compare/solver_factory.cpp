@@ -133,7 +133,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
         scene.garment(), make_predictor(network, weights, settings), learned);
     if (!network.as_shipped) return stepper;  // NAME+K: exactly that in every frame
     GuardSettings guard;
-    guard.solver.potential.self_contact = scene.self_contact();
+    guard.solver.potential = learned.potential;
     return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), guard);
 }
 
