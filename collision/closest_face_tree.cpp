@@ -12,9 +12,15 @@ namespace cloth {
 
 static constexpr float infinity = std::numeric_limits<float>::infinity();
 
-ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, double radius)
+ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, double radius,
+                                 const std::vector<std::uint8_t>* limbs)
     : m_faces(&faces), m_radius(radius), m_vertices(vertices) {
+    const auto usable = [](std::uint8_t limb) { return limb < max_limbs; };
+    if (limbs && limbs->size() == static_cast<size_t>(faces.rows()) &&
+        std::all_of(limbs->begin(), limbs->end(), usable))
+        m_limbs = *limbs;
     build_nodes();
+    mark_limbs();
     m_local.resize(static_cast<size_t>(vertices.rows()));
     localize();
     fit_leaves();
@@ -61,6 +67,22 @@ void ClosestFaceTree::build_nodes() {
         m_nodes.push_back(node);
     }
     m_stack_size = width * depths.back();  // breadth first: the last node is one of the deepest
+}
+
+void ClosestFaceTree::mark_limbs() {
+    for (size_t i = m_nodes.size(); i-- > 0;) {
+        Node& node = m_nodes[i];
+        for (int slot = 0; slot < width; ++slot) {
+            const std::int32_t child = node.child[slot];
+            node.limbs[slot] = 0;
+            if (child >= 0) {
+                for (const LimbSet limbs : m_nodes[static_cast<size_t>(child)].limbs)
+                    node.limbs[slot] |= limbs;
+            } else if (~child < m_faces->rows()) {
+                node.limbs[slot] = limb(~child);
+            }
+        }
+    }
 }
 
 void ClosestFaceTree::refit(const Points& vertices) {
@@ -151,12 +173,12 @@ static float widened(double squared) {
 
 /// Appends the children within the bound to the stack, the nearest last, and returns its new end.
 ClosestFaceTree::Entry* ClosestFaceTree::push_children(const Node& node, const Eigen::Vector3f& q,
-                                                       float bound, Entry* end) {
+                                                       float bound, LimbSet ignored, Entry* end) {
     const Eight squared = box_distances(node, q);
     Entry* const first = end;
     for (int slot = 0; slot < width; ++slot) {  // no branch: which ones pass is unpredictable
         *end = {node.child[slot], squared[slot]};
-        end += squared[slot] <= bound;
+        end += squared[slot] <= bound && (node.limbs[slot] & ~ignored) != 0;
     }
     for (Entry* entry = first + 1; entry < end; ++entry) {  // insertion sort: one to three entries
         const Entry moved = *entry;
@@ -167,27 +189,94 @@ ClosestFaceTree::Entry* ClosestFaceTree::push_children(const Node& node, const E
     return end;
 }
 
-FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& stack) const {
+FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& stack,
+                                 LimbSet ignored) const {
     FaceHit best;
     best.squared = radius * radius;
     if (m_nodes.empty()) return best;
+    if (hint >= 0 && (limb(hint) & ignored) != 0) hint = -1;
     if (hint >= 0) try_face(q, hint, best);
     const Eigen::Vector3f local = (q - m_origin).cast<float>();
     float bound = widened(best.squared);
 
     if (stack.size() < m_stack_size) stack.resize(m_stack_size);
-    Entry* end = push_children(m_nodes[0], local, bound, stack.data());
+    Entry* end = push_children(m_nodes[0], local, bound, ignored, stack.data());
     while (end != stack.data()) {
         const Entry entry = *--end;
         if (entry.squared > bound) continue;
         if (entry.child >= 0) {
-            end = push_children(m_nodes[static_cast<size_t>(entry.child)], local, bound, end);
+            end = push_children(m_nodes[static_cast<size_t>(entry.child)], local, bound, ignored,
+                                end);
         } else if (~entry.child != hint) {
             try_face(q, ~entry.child, best);
             bound = widened(best.squared);
         }
     }
     return best;
+}
+
+/// Slab test of a ray with the eight boxes of a node: where it enters them, infinity: it does not.
+ClosestFaceTree::Eight ClosestFaceTree::box_entries(const Node& node, const Eigen::Vector3f& q,
+                                                    const Eigen::Vector3f& inverse, float length) {
+    Eight enter = Eight::Zero(), leave = Eight::Constant(length);
+    for (int k = 0; k < 3; ++k) {
+        const Eight low = (node.low[k] - q[k]) * inverse[k];
+        const Eight high = (node.high[k] - q[k]) * inverse[k];
+        enter = enter.max(low.min(high));
+        leave = leave.min(low.max(high));
+    }
+    return (enter <= leave).select(enter, infinity);
+}
+
+int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
+                               double* distance) const {
+    if (m_nodes.empty()) return -1;
+    const Eigen::Vector3f local = (q - m_origin).cast<float>();
+    Eigen::Vector3f inverse;
+    for (int k = 0; k < 3; ++k) {
+        const double d = direction[k];
+        inverse[k] = static_cast<float>(1.0 / (std::abs(d) < 1e-12 ? std::copysign(1e-12, d) : d));
+    }
+    if (stack.size() < m_stack_size) stack.resize(m_stack_size);
+    int face = -1;
+    double nearest = length;
+    stack[0] = {0, 0.0f};
+    Entry* end = stack.data() + 1;
+    while (end != stack.data()) {
+        const Entry entry = *--end;
+        if (entry.squared > nearest) continue;
+        if (entry.child < 0) {
+            const double at = ray_distance(q, direction, ~entry.child);
+            if (at < nearest || (at == nearest && ~entry.child < face))
+                nearest = at, face = ~entry.child;
+            continue;
+        }
+        const Node& node = m_nodes[static_cast<size_t>(entry.child)];
+        const Eight enter =
+            box_entries(node, local, inverse, static_cast<float>(nearest) * 1.00001f);
+        for (int slot = 0; slot < width; ++slot)
+            if (enter[slot] < infinity && node.limbs[slot] != 0)
+                *end++ = {node.child[slot], enter[slot] * 0.99999f};
+    }
+    if (distance) *distance = nearest;
+    return face;
+}
+
+/// Where the ray meets a face (Moeller and Trumbore 1997); infinity: it does not.
+double ClosestFaceTree::ray_distance(const Vec3& q, const Vec3& direction, int face) const {
+    constexpr double miss = std::numeric_limits<double>::infinity();
+    const Vec3 a = m_vertices.row((*m_faces)(face, 0));
+    const Vec3 ab = m_vertices.row((*m_faces)(face, 1)).transpose() - a;
+    const Vec3 ac = m_vertices.row((*m_faces)(face, 2)).transpose() - a;
+    const Vec3 across = direction.cross(ac);
+    const double volume = ab.dot(across);
+    if (volume == 0.0) return miss;
+    const Vec3 from = q - a;
+    const double u = from.dot(across) / volume;
+    const Vec3 turned = from.cross(ab);
+    const double v = direction.dot(turned) / volume;
+    const double at = ac.dot(turned) / volume;
+    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && at >= 0.0 ? at : miss;
 }
 
 }  // namespace cloth

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "data/boundary.h"
 #include "data/types.h"
 
 namespace cloth {
@@ -33,7 +34,9 @@ class ClosestFaceTree {
 
     /// `faces` must outlive the tree and be in range of `vertices`.
     /// @param radius  the largest radius of later queries (m)
-    ClosestFaceTree(const Points& vertices, const Faces& faces, double radius);
+    /// @param limbs   |F|: limb of each face, 0 to 31; null: all are limb 0
+    ClosestFaceTree(const Points& vertices, const Faces& faces, double radius,
+                    const std::vector<std::uint8_t>* limbs = nullptr);
 
     /// Moves the mesh (same faces). Cheap if `vertices` are those of the last call.
     void refit(const Points& vertices);
@@ -42,8 +45,20 @@ class ClosestFaceTree {
     /// finite are no candidates (their edges belong to their neighbours too).
     /// @param hint   a face that is probably close, or -1; it saves time
     /// @param stack  scratch memory
-    FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack) const;
+    /// @param ignored  limbs whose faces are no candidates
+    FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack,
+                    LimbSet ignored = 0) const;
 
+    /// First face that the ray from `q` along the unit vector `direction` meets within `length`,
+    /// or -1. Where it meets an edge, either face or (rarely, by rounding) none may be reported.
+    /// @param distance  if not null, where it is (m)
+    int first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
+                  double* distance = nullptr) const;
+
+    /// The set that holds a face's limb.
+    LimbSet limb(int face) const {
+        return m_limbs.empty() ? 1u : LimbSet(1) << m_limbs[size_t(face)];
+    }
     const Points& vertices() const { return m_vertices; }
     const Faces& faces() const { return *m_faces; }
 
@@ -53,18 +68,24 @@ class ClosestFaceTree {
     struct alignas(32) Node {
         Eight low[3], high[3];      ///< boxes of the children; empty boxes are +inf to -inf
         std::int32_t child[width];  ///< a node, or ~face
+        LimbSet limbs[width];       ///< of the faces below
     };
 
     void build_nodes();
+    void mark_limbs();
     void localize();
     void fit_leaves();
     void fit_inner_nodes();
     static Eight box_distances(const Node& node, const Eigen::Vector3f& q);
+    static Eight box_entries(const Node& node, const Eigen::Vector3f& q,
+                             const Eigen::Vector3f& inverse, float length);
     static Entry* push_children(const Node& node, const Eigen::Vector3f& q, float bound,
-                                Entry* end);
+                                LimbSet ignored, Entry* end);
+    double ray_distance(const Vec3& q, const Vec3& direction, int face) const;
     void try_face(const Vec3& q, int face, FaceHit& best) const;
 
     const Faces* m_faces;
+    std::vector<std::uint8_t> m_limbs;
     double m_radius;
     Points m_vertices;
     Vec3 m_origin = Vec3::Zero();

@@ -54,21 +54,40 @@ VertexFaces::VertexFaces(const Points& vertices, const Faces& faces)
             m_faces[size_t(next[size_t(welded(faces(f, k)))]++)] = static_cast<int>(f);
 }
 
-MeshSurface::MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius)
+MeshSurface::MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius,
+                         const std::vector<std::uint8_t>* limbs)
     : m_faces(std::move(faces)),
-      m_tree(vertices, *m_faces, radius),
+      m_tree(vertices, *m_faces, radius, limbs),
       m_vertex_faces(vertices, *m_faces) {
 }
 
 SurfaceHit MeshSurface::closest(const Vec3& q, double radius, int hint,
-                                ClosestFaceTree::Stack& stack) const {
-    const FaceHit hit = m_tree.closest(q, radius, hint, stack);
+                                ClosestFaceTree::Stack& stack, LimbSet ignored) const {
+    const FaceHit hit = m_tree.closest(q, radius, hint, stack, ignored);
     if (hit.face < 0) return {};
     Vec3 point = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
         point += hit.barycentric[k] * m_tree.vertices().row((*m_faces)(hit.face, k)).transpose();
     const bool inside_face = (hit.barycentric.array() != 0.0).all();
-    return inside_face ? on_face(hit, q - point) : on_edge_or_vertex(hit, q - point);
+    return inside_face ? on_face(hit, q - point) : on_edge_or_vertex(hit, q - point, ignored);
+}
+
+Vec3 MeshSurface::normal(int face) const {
+    const Points& x = m_tree.vertices();
+    Vec3 normal = Vec3::Zero();
+    triangle_normal(x.row((*m_faces)(face, 0)), x.row((*m_faces)(face, 1)),
+                    x.row((*m_faces)(face, 2)), normal);
+    return normal;
+}
+
+double MeshSurface::cover(const Vec3& point, int face, double length,
+                          ClosestFaceTree::Stack& stack) const {
+    constexpr double start = 1e-5;  // m: off the face itself
+    const Vec3 up = normal(face);
+    if (up.isZero(0.0)) return 0.0;
+    double at = 0.0;
+    const int hit = m_tree.first_hit(point + start * up, up, length, stack, &at);
+    return hit >= 0 && normal(hit).dot(up) > 0.0 ? at : 0.0;
 }
 
 static double signed_root(double squared, bool negative) {
@@ -102,7 +121,8 @@ int MeshSurface::corner_at(int face, int vertex) const {
     return -1;
 }
 
-SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const {
+SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away,
+                                          LimbSet ignored) const {
     int ends[2] = {-1, -1};  // the feature's vertices; the second is -1 at a vertex
     double weights[2] = {0.0, 0.0};
     for (int k = 0, end = 0; k < 3; ++k)
@@ -113,6 +133,7 @@ SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) 
 
     int front = -1, back = -1;  // the faces most squarely before and behind the point
     double front_height = 0.0, back_height = 0.0, weighted = 0.0;
+    bool at_border = false;  // of a limb that is passed over
     for (const int* face = m_vertex_faces.begin(ends[0]); face != m_vertex_faces.end(ends[0]);
          ++face) {
         const int pivot = corner_at(*face, ends[0]);
@@ -124,11 +145,16 @@ SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away) 
         if (!triangle_normal(corners[0], corners[1], corners[2], normal)) continue;
         const double height = normal.dot(away);
         weighted += height * (ends[1] < 0 ? corner_angle(corners, pivot) : 1.0);
+        if ((m_tree.limb(*face) & ignored) != 0) {
+            at_border = true;
+            continue;
+        }
         if (front < 0 || height > front_height) front = *face, front_height = height;
         if (back < 0 || height < back_height) back = *face, back_height = height;
     }
 
     const bool inside = weighted < 0.0;
+    if (at_border && inside) return {};  // in the limb that is passed over
     SurfaceHit result{inside ? back : front, Vec3::Zero(), signed_root(hit.squared, inside)};
     for (const int end : {0, 1})
         if (ends[end] >= 0) result.barycentric[corner_at(result.face, ends[end])] = weights[end];

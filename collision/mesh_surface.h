@@ -41,18 +41,28 @@ class VertexFaces {
 /// in front of (or behind, inside) is reported: rounding cannot make the normal jump between them.
 class MeshSurface {
  public:
-    MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius);
+    /// @param limbs  |F|: limb of each face, or null
+    MeshSurface(std::shared_ptr<const Faces> faces, const Points& vertices, double radius,
+                const std::vector<std::uint8_t>* limbs = nullptr);
 
     void refit(const Points& vertices) { m_tree.refit(vertices); }
 
-    SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack) const;
+    /// @param ignored  limbs that are passed over
+    SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack,
+                       LimbSet ignored = 0) const;
+
+    /// How deep (m, along the face's normal) a point of a face lies inside another part of the
+    /// mesh; 0: it does not, for what the ray along the normal meets first (within `length`) is
+    /// seen from outside.
+    double cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack) const;
 
     const std::shared_ptr<const Faces>& faces() const { return m_faces; }
     Eigen::Index vertex_count() const { return m_tree.vertices().rows(); }
 
  private:
+    Vec3 normal(int face) const;
     SurfaceHit on_face(const FaceHit& hit, const Vec3& away) const;
-    SurfaceHit on_edge_or_vertex(const FaceHit& hit, const Vec3& away) const;
+    SurfaceHit on_edge_or_vertex(const FaceHit& hit, const Vec3& away, LimbSet ignored) const;
     /// The corner (0 to 2) of a face that is this vertex, or coincides with it across a seam; -1.
     int corner_at(int face, int vertex) const;
 

@@ -25,6 +25,7 @@ using Hints = std::vector<int>;
 
 struct CachedMesh {
     std::shared_ptr<const Faces> faces;  // held, so that the pointer stays a key
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs;
     int occurrence;                      // the same faces may stand in one boundary several times
     long last_seen;
     std::unique_ptr<MeshSurface> surface;  // null: the faces are unusable
@@ -65,12 +66,13 @@ int* hints_for(CachedMesh& mesh, size_t count) {
 }
 
 Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
-                     ClosestFaceTree::Stack& stack) {
+                     LimbSet ignored, ClosestFaceTree::Stack& stack) {
     Nearest nearest;
     if (!x.allFinite()) return nearest;
     for (const Target& target : targets) {
         if (target.surface) {
-            const SurfaceHit hit = target.surface->closest(x, radius, target.hints[point], stack);
+            const SurfaceHit hit =
+                target.surface->closest(x, radius, target.hints[point], stack, ignored);
             target.hints[point] = hit.face;
             if (hit.face < 0 || hit.distance >= nearest.distance) continue;
             nearest.on_mesh = hit;
@@ -163,7 +165,7 @@ struct Proximity::Impl {
     CachedMesh& cached(const Obstacle& obstacle, const Points& x) {
         int occurrence = 0;
         for (CachedMesh& mesh : meshes) {
-            if (mesh.faces != obstacle.faces) continue;
+            if (mesh.faces != obstacle.faces || mesh.limbs != obstacle.limbs) continue;
             if (mesh.last_seen == queries) {
                 ++occurrence;
                 continue;
@@ -172,8 +174,10 @@ struct Proximity::Impl {
         }
         std::unique_ptr<MeshSurface> surface;
         if (faces_in_range(*obstacle.faces, x.rows()))
-            surface = std::make_unique<MeshSurface>(obstacle.faces, x, settings.radius);
-        meshes.push_back({obstacle.faces, occurrence, queries, std::move(surface), {}});
+            surface = std::make_unique<MeshSurface>(obstacle.faces, x, settings.radius,
+                                                    obstacle.limbs.get());
+        meshes.push_back(
+            {obstacle.faces, obstacle.limbs, occurrence, queries, std::move(surface), {}});
         return meshes.back();
     }
 
@@ -209,15 +213,19 @@ struct Proximity::Impl {
     }
 
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
+    /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
     template <class Store>
-    void for_each_nearest(const Points& x, const std::vector<int>* rows, const Store& store) {
+    void for_each_nearest(const Points& x, const std::vector<int>* rows,
+                          const std::vector<LimbSet>& ignored, const Store& store) {
         const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
         const int threads = count < min_parallel || targets.empty() ? 1 : thread_count();
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
         for (int at = 0; at < count; ++at) {
             const int i = rows ? (*rows)[size_t(at)] : at;
             ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
-            store(i, find_nearest(targets, x.row(i), size_t(i), settings.radius, stack));
+            const LimbSet passed_over = ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
+            store(i,
+                  find_nearest(targets, x.row(i), size_t(i), settings.radius, passed_over, stack));
         }
     }
 };
@@ -245,17 +253,29 @@ void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts
                       StepEnd chosen_at) {
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
-    m_impl->for_each_nearest(x, nullptr, [&](int i, const Nearest& nearest) {
-        store_row(nearest, chosen_at, i, contacts);
-    });
+    m_impl->for_each_nearest(
+        x, nullptr, boundary.ignored_limbs,
+        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 
 void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
-                           SurfaceContacts& contacts, StepEnd chosen_at) {
+                           SurfaceContacts& contacts, StepEnd chosen_at,
+                           const std::vector<LimbSet>* ignored) {
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
-    m_impl->for_each_nearest(x, &rows, [&](int i, const Nearest& nearest) {
-        store_row(nearest, chosen_at, i, contacts);
-    });
+    m_impl->for_each_nearest(
+        x, &rows, ignored ? *ignored : boundary.ignored_limbs,
+        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+}
+
+double Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at) {
+    constexpr double length = 0.5;  // m: thicker than any limb
+    if (!contacts.has(i)) return 0.0;
+    const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
+    for (const Target& target : m_impl->targets)
+        if (target.index == contacts.obstacle[size_t(i)] && target.surface)
+            return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
+                                         m_impl->stacks[0]);
+    return 0.0;
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,
@@ -263,7 +283,8 @@ void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepE
     distance.resize(x.rows());
     m_impl->prepare(boundary, end, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, nullptr, [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
+        x, nullptr, boundary.ignored_limbs,
+        [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
 }
 
 static void check_mesh(const std::string& name, const Obstacle& mesh) {
@@ -275,6 +296,11 @@ static void check_mesh(const std::string& name, const Obstacle& mesh) {
     if (!faces_in_range(*mesh.faces, mesh.x0.rows()))
         throw ArgumentError(name, "a face refers to a vertex that does not exist",
                             "give x0 and x1 of all vertices, numbered from 0");
+    if (mesh.limbs && !has_limbs(mesh))
+        throw ArgumentError(name, "has not one limb for each face",
+                            "give |F| limbs, or leave Obstacle::limbs empty");
+    if (mesh.limbs && *std::max_element(mesh.limbs->begin(), mesh.limbs->end()) >= max_limbs)
+        throw ArgumentError(name, "a limb is out of range", "number limbs from 0 to 31");
     if (!mesh.x0.allFinite() || !mesh.x1.allFinite())
         throw ArgumentError(name, "a vertex is not finite", "check the pose that made it");
 }

@@ -77,11 +77,19 @@ class Proximity {
 
     /// Repeats a query for some rows of `x` only (ascending or not, each at most once); the other
     /// rows of `contacts`, which has |V| rows from a query before, are left as they are.
+    /// @param ignored  limbs that each row of x passes over; null: Boundary::ignored_limbs, if it
+    ///                 has as many rows
     void query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
-                    SurfaceContacts& contacts, StepEnd chosen_at = StepEnd::start);
+                    SurfaceContacts& contacts, StepEnd chosen_at = StepEnd::start,
+                    const std::vector<LimbSet>* ignored = nullptr);
 
     /// Signed distance (m) of `x` to the surfaces at one end of the step; +inf beyond the radius.
+    /// Boundary::ignored_limbs is used if it has as many rows.
     void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
+
+    /// How deep (m) row i's surface point lies inside another part of its own mesh; 0: outside. To
+    /// be asked right after the query, for the same end.
+    double cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at);
 
     /// Mesh hierarchies that are kept at present.
     int cached_meshes() const;

@@ -70,7 +70,14 @@ void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Poi
             m_x.row(row) += m_samples[k].weight[c] * x.row(vertex(m_samples[k], c));
     }
     if (m_rows.empty()) return;
-    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at);
+    m_ignored.resize(m_samples.size());
+    for (const int row : m_rows) {
+        const Sample& sample = m_samples[static_cast<size_t>(row)];
+        LimbSet& ignored = m_ignored[static_cast<size_t>(row)] = 0;
+        for (size_t c = 0; c < 3; ++c)
+            if (sample.weight[c] > 0.0) ignored |= ignored_limbs(boundary, vertex(sample, c));
+    }
+    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at, &m_ignored);
     for (const int row : m_rows) {
         if (!m_near.has(row) || !(m_near.distance[row] < reach)) continue;
         const RidgeContact found = ridge(row, chosen_at);

@@ -45,6 +45,7 @@ class RidgeFinder {
     Points m_x;                     ///< |samples| x 3 (m)
     std::vector<int> m_rows;
     SurfaceContacts m_near;  ///< |samples|
+    std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its corners
 };
 
 }  // namespace cloth

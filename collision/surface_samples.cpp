@@ -105,7 +105,12 @@ double SurfaceSamples::vouched_by_faces(int edge) const {
 
 /// Searches for the nearest points of the samples in m_rows.
 void SurfaceSamples::search(Proximity& proximity, const Boundary& boundary) {
-    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end);
+    m_ignored.resize(static_cast<size_t>(m_x.rows()));
+    for (const int sample : m_rows) {
+        LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
+        for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
+    }
+    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, &m_ignored);
     for (const int sample : m_rows)
         m_distance[sample] = std::min(m_contacts.distance[sample], m_radius);
 }

@@ -58,6 +58,7 @@ class SurfaceSamples {
     VectorX m_distance;          ///< |samples| (m): a lower bound, exact where searched
     SurfaceContacts m_contacts;  ///< |samples|
     std::vector<int> m_rows, m_deep;
+    std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its vertices
     std::vector<char> m_parted;   ///< |samples|: its vertices stand on skins that part
     std::vector<char> m_movable;  ///< |samples|: not all of its vertices are pinned
     double m_radius = 0.0;

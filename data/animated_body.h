@@ -14,6 +14,8 @@ struct AnimationSettings {
     double start_ramp = 8.0 / 30.0;  ///< the motion then takes up speed over this time instead of
                                      ///< with a jolt (s), 0 to 1; it ends start_ramp / 2 later
     double friction = 0.5;           ///< of the skin against cloth (Coulomb), 0 to 1.5
+    bool limbs = false;  ///< obstacles have the body's limbs: cloth passes through those that pass
+                         ///< through others
     RetargetSettings retarget;
 };
 
@@ -34,6 +36,9 @@ class AnimatedBody : public MovingSurface {
     const AnimationSettings& settings() const { return m_settings; }
 
     std::shared_ptr<const Faces> faces() const override { return m_body->faces(); }
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs() const override {
+        return m_settings.limbs ? m_body->limbs() : nullptr;
+    }
     /// Skin vertices (|V| x 3, m).
     Points vertices(double time) const override;
     /// Lead-in and motion together (s).

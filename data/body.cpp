@@ -1,5 +1,6 @@
 #include "data/body.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "data/errors.h"
@@ -32,6 +33,7 @@ Body::Body(TriMesh rest, RigRecipe recipe)
     place_joints();
     m_weights = std::make_shared<const SkinWeights>(
         heat_weights(rest_mesh(), m_bones, static_cast<int>(m_joints.size())));
+    name_limbs();
 }
 
 Body Body::with_rest(const Points& rest) const {
@@ -52,6 +54,27 @@ void Body::place_joints() {
         m_joints.push_back({joint.name, joint.parent, position(joint.point)});
     for (const RigBone& bone : m_recipe->bones)
         m_bones.push_back({bone.joint, position(bone.from), position(bone.to)});
+}
+
+/// A limb begins at each of these joints; other joints belong to their parent's.
+void Body::name_limbs() {
+    const std::vector<std::string> begins = {"Head",         "LeftArm",    "LeftForeArm",
+                                             "LeftUpLeg",    "LeftLeg",    "RightArm",
+                                             "RightForeArm", "RightUpLeg", "RightLeg"};
+    std::vector<std::uint8_t> limb_of_joint(m_joints.size(), 0);
+    for (size_t j = 0; j < m_joints.size(); ++j) {
+        const auto found = std::find(begins.begin(), begins.end(), m_joints[j].name);
+        if (found != begins.end())
+            limb_of_joint[j] = static_cast<std::uint8_t>(1 + (found - begins.begin()));
+        else if (m_joints[j].parent >= 0)
+            limb_of_joint[j] = limb_of_joint[static_cast<size_t>(m_joints[j].parent)];
+    }
+    const std::vector<int> joints = dominant_joint();
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>();
+    for (Eigen::Index f = 0; f < m_faces->rows(); ++f)
+        limbs->push_back(
+            limb_of_joint[static_cast<size_t>(joints[static_cast<size_t>((*m_faces)(f, 0))])]);
+    m_limbs = limbs;
 }
 
 int Body::joint(const std::string& name) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,6 +50,9 @@ class Body {
     /// Joint that moves each vertex most (|V|).
     std::vector<int> dominant_joint() const { return m_weights->dominant_joints(); }
 
+    /// Limb of each face (|F|): trunk, head, upper and lower half of each arm and leg.
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs() const { return m_limbs; }
+
     /// Index of the joint called `name`.
     /// @throws ArgumentError if there is none
     int joint(const std::string& name) const;
@@ -64,11 +68,13 @@ class Body {
 
  private:
     void place_joints();
+    void name_limbs();
 
     Points m_rest;
     std::shared_ptr<const Faces> m_faces;
     std::shared_ptr<const RigRecipe> m_recipe;
     std::shared_ptr<const SkinWeights> m_weights;
+    std::shared_ptr<const std::vector<std::uint8_t>> m_limbs;
     std::vector<Joint> m_joints;
     std::vector<BoneSegment> m_bones;
 };

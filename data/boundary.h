@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,10 @@
 namespace cloth {
 
 using Pose = Eigen::Isometry3d;
+
+/// A set of limbs of obstacles: bit k is limb k.
+using LimbSet = std::uint32_t;
+constexpr int max_limbs = 32;
 
 enum class ObstacleShape { mesh, sphere, capsule, box, plane };
 
@@ -20,6 +25,9 @@ enum class ObstacleShape { mesh, sphere, capsule, box, plane };
 struct Obstacle {
     ObstacleShape shape = ObstacleShape::mesh;
     std::shared_ptr<const Faces> faces;  ///< mesh: (|F| x 3), counter-clockwise seen from outside
+    /// Mesh: limb of each face (|F|, 0 to 31), the same pointer for life; null: the mesh is one
+    /// body. Cloth passes through limbs that are inside other limbs, see LimbOverlap.
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs;
     Points x0;                           ///< mesh: vertices at t (m)
     Points x1;                           ///< mesh: vertices at t + dt (m)
     Pose pose0 = Pose::Identity();       ///< primitive: frame at t
@@ -29,12 +37,26 @@ struct Obstacle {
     double friction = 0.5;               ///< Coulomb coefficient, 0 to 1.5
 };
 
+/// Whether a mesh has a usable limb for each face.
+inline bool has_limbs(const Obstacle& mesh) {
+    return mesh.limbs && mesh.faces &&
+           mesh.limbs->size() == static_cast<std::size_t>(mesh.faces->rows());
+}
+
 /// All that a stepper knows of the outside for one step.
 struct Boundary {
     std::vector<Obstacle> obstacles;
     Points pin_targets;                   ///< |pins| x 3 (m): where the garment's pins are at t + dt
     Vec3 gravity = Vec3(0, -9.81, 0);     ///< (m/s^2)
     Points accelerations;                 ///< |V| x 3 (m/s^2) such as wind, or empty
+    std::vector<LimbSet> ignored_limbs;   ///< |V|: limbs that a vertex does not touch, or empty;
+                                          ///< LimbOverlap fills it
 };
+
+/// The limbs that a vertex does not touch.
+inline LimbSet ignored_limbs(const Boundary& boundary, int vertex) {
+    const auto i = static_cast<std::size_t>(vertex);
+    return i < boundary.ignored_limbs.size() ? boundary.ignored_limbs[i] : 0;
+}
 
 }  // namespace cloth

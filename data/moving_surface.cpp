@@ -25,6 +25,7 @@ int MovingSurface::frame_count(double dt) const {
 Obstacle MovingSurface::obstacle(double t0, double t1) const {
     Obstacle obstacle;
     obstacle.faces = faces();
+    obstacle.limbs = limbs();
     obstacle.friction = m_friction;
     obstacle.x0 = cached_vertices(t0);
     obstacle.x1 = cached_vertices(t1);

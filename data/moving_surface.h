@@ -14,6 +14,8 @@ class MovingSurface {
     virtual ~MovingSurface() = default;
 
     virtual std::shared_ptr<const Faces> faces() const = 0;
+    /// Limb of each face (|F|), see Obstacle; null: the surface has none.
+    virtual std::shared_ptr<const std::vector<std::uint8_t>> limbs() const { return nullptr; }
     /// Vertices (|V| x 3, m) at `time` (s); times outside [0, duration()] give the nearest end.
     virtual Points vertices(double time) const = 0;
     /// Length of the motion (s).

@@ -33,6 +33,7 @@ void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
     };
     part.shape = whole.shape;
     part.faces = whole.faces;
+    part.limbs = whole.limbs;
     part.half_extents = whole.half_extents;
     part.radius = whole.radius;
     part.friction = whole.friction;
@@ -49,6 +50,7 @@ void add(const StepReport& part, StepReport& report) {
     report.residual = part.residual;
     report.converged = part.converged && report.converged;
     report.max_penetration = part.max_penetration;
+    report.max_entry = std::max(report.max_entry, part.max_entry);
     report.tangles = part.tangles;
     report.first_tangle = part.first_tangle;
     report.times.proximity += part.times.proximity;
@@ -96,6 +98,7 @@ StepReport SubsteppedStepper::step(const Boundary& boundary, double dt, ClothSta
     if (m_last_x.rows() == state.x.rows() && m_last_x == state.x) m_state.v += m_lag;
     m_part.gravity = boundary.gravity;
     m_part.accelerations = boundary.accelerations;
+    m_part.ignored_limbs = boundary.ignored_limbs;
     m_part.obstacles.resize(boundary.obstacles.size());
     m_pins_before.resize(boundary.pin_targets.rows(), 3);
     for (size_t p = 0; p < m_garment->pins().size(); ++p)

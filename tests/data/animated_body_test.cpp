@@ -186,6 +186,15 @@ TEST(AnimatedBody, ObstaclesAreThePosesAtBothEnds) {
     EXPECT_LT((body.vertices(1e9) - body.vertices(body.duration())).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(AnimatedBody, ObstaclesHaveLimbsIfAskedFor) {
+    EXPECT_EQ(jumper().obstacle(0.0, 0.1).limbs, nullptr);
+    AnimationSettings settings;
+    settings.limbs = true;
+    const AnimatedBody body(default_body(), jumps(), settings);
+    EXPECT_EQ(body.obstacle(0.0, 0.1).limbs, default_body()->limbs());
+    EXPECT_EQ(body.obstacle(1.0, 1.1).limbs, default_body()->limbs());
+}
+
 TEST(AnimatedBody, WearsOtherFigures) {
     const AnimatedBody boxer(default_body(), load_motion_by_name("Boxing_Toes"));
     const double start = boxer.settings().lead_in;

@@ -103,6 +103,34 @@ TEST(Body, LimbsDoNotPullEachOther) {
     }
 }
 
+TEST(Body, FacesAreLabelledByLimb) {
+    const Body& body = default_body();
+    const std::vector<std::uint8_t>& limbs = *body.limbs();
+    ASSERT_EQ(limbs.size(), static_cast<size_t>(body.faces()->rows()));
+    EXPECT_EQ(std::set<int>(limbs.begin(), limbs.end()).size(), 10u);
+    const auto limb_near = [&](const Vec3& point) {
+        double nearest = 1e9;
+        int limb = -1;
+        for (Eigen::Index f = 0; f < body.faces()->rows(); ++f) {
+            const double distance =
+                (body.rest().row((*body.faces())(f, 0)).transpose() - point).norm();
+            if (distance < nearest) nearest = distance, limb = limbs[static_cast<size_t>(f)];
+        }
+        return limb;
+    };
+    const auto limb_at = [&](const std::string& joint) {
+        return limb_near(body.joints()[static_cast<size_t>(body.joint(joint))].position);
+    };
+    EXPECT_EQ(limb_at("Spine"), limb_at("Spine1"));
+    std::set<int> different = {limb_at("Spine"), limb_near(body.point("HeadTop"))};
+    for (const std::string side : {"Left", "Right"}) {
+        EXPECT_EQ(limb_at(side + "Hand"), limb_at(side + "FingerBase"));
+        EXPECT_EQ(limb_at(side + "Foot"), limb_at(side + "ToeBase"));
+        different.insert({limb_at(side + "Hand"), limb_at(side + "Foot")});
+    }
+    EXPECT_EQ(different.size(), 6u);
+}
+
 TEST(Body, FingersFollowTheirHandAlone) {
     const Body& body = default_body();
     const double wrist = body.joints()[body.joint("LeftFingerBase")].position.x();

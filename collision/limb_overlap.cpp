@@ -1,0 +1,188 @@
+#include "collision/limb_overlap.h"
+
+#include <algorithm>
+#include <string>
+
+#include "data/errors.h"
+
+namespace cloth {
+namespace {
+
+void check(const char* field, double value, double low, double high) {
+    if (!(value >= low && value <= high))
+        throw ArgumentError(std::string("LimbOverlapSettings.") + field,
+                            std::to_string(value) + " is out of range",
+                            "use " + std::to_string(low) + " to " + std::to_string(high));
+}
+
+LimbSet only(size_t limb) {
+    return limb < max_limbs ? LimbSet(1) << limb : 0;
+}
+
+}  // namespace
+
+LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
+    check("reach", settings.reach, 0.01, 0.1);
+    check("margin", settings.margin, 1e-3, 0.05);
+}
+
+/// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
+/// step. Obstacles without limbs may come and go.
+bool LimbOverlap::learn_limbs(const Boundary& boundary) {
+    m_found.clear();
+    for (const Obstacle& obstacle : boundary.obstacles)
+        if (has_limbs(obstacle)) m_found.push_back(obstacle.limbs);
+    std::sort(m_found.begin(), m_found.end());
+    if (m_found != m_known) {
+        m_known = m_found;
+        m_joined.fill(0);
+        m_home.clear();
+        m_buried = 0;
+        for (const Obstacle& obstacle : boundary.obstacles)
+            if (has_limbs(obstacle)) add_joints(obstacle);
+    }
+    return !m_known.empty();
+}
+
+/// Limbs are joined where their faces share a vertex.
+void LimbOverlap::add_joints(const Obstacle& obstacle) {
+    const Faces& faces = *obstacle.faces;
+    std::vector<LimbSet> at_vertex(static_cast<size_t>(obstacle.x0.rows()), 0);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k)
+            if (faces(f, k) >= 0 && faces(f, k) < obstacle.x0.rows())
+                at_vertex[static_cast<size_t>(faces(f, k))] |=
+                    only((*obstacle.limbs)[static_cast<size_t>(f)]);
+    for (const LimbSet meeting : at_vertex)
+        for (size_t limb = 0; limb < max_limbs; ++limb)
+            if ((meeting & only(limb)) != 0) m_joined[limb] |= meeting;
+}
+
+LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
+    const auto i = static_cast<size_t>(vertex);
+    if (!m_near.has(vertex) || m_near.face[i] < 0) return 0;
+    const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(m_near.obstacle[i])];
+    if (!has_limbs(obstacle)) return 0;
+    return only((*obstacle.limbs)[static_cast<size_t>(m_near.face[i])]);
+}
+
+LimbSet LimbOverlap::strangers(size_t vertex) const {
+    LimbSet known = 0;
+    for (size_t limb = 0; limb < max_limbs; ++limb)
+        if ((m_home[vertex] & only(limb)) != 0) known |= m_joined[limb];
+    return m_home[vertex] != 0 ? ~known : 0;
+}
+
+void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
+    const auto count = static_cast<size_t>(x.rows());
+    if (m_home.size() != count) {
+        m_home.assign(count, 0);
+        m_ignored.assign(count, 0);
+        m_without.assign(count, 0);
+        m_proximity.query(x, boundary, m_near);
+        m_near_home = m_near;
+    }
+    m_rows.clear();
+    for (size_t i = 0; i < count; ++i)
+        if (m_home[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
+    if (m_rows.empty()) return;
+    m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, &m_without);
+    for (const int i : m_rows) m_home[static_cast<size_t>(i)] = limb_of(boundary, i);
+}
+
+/// Whether the vertex is outside of the limb in m_near, with room between limb and home.
+bool LimbOverlap::is_clear(int vertex, StepEnd end) {
+    if (m_near.distance[vertex] > m_settings.reach) return true;
+    if (m_near.distance[vertex] < m_settings.margin) return false;
+    if (m_proximity.cover(m_near, vertex, end) > 0.0) return false;
+    if (!m_near_home.has(vertex)) return true;
+    const bool start = end == StepEnd::start;
+    const Vec3 home = (start ? m_near_home.point0 : m_near_home.point1).row(vertex);
+    const Vec3 limb = (start ? m_near.point0 : m_near.point1).row(vertex);
+    return (home - limb).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
+}
+
+/// Marks the limbs that are not clear of vertices which ignore them.
+void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
+    for (size_t limb = 0; limb < max_limbs; ++limb) {
+        m_rows.clear();
+        for (size_t i = 0; i < m_home.size(); ++i)
+            if ((m_ignored[i] & ~m_keep[i] & only(limb)) != 0) {
+                m_rows.push_back(static_cast<int>(i));
+                m_without[i] = ~only(limb);
+            }
+        if (m_rows.empty()) continue;
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, &m_without);
+        for (const int i : m_rows)
+            if (m_near.has(i) && !is_clear(i, end)) m_keep[static_cast<size_t>(i)] |= only(limb);
+    }
+}
+
+void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_home.size(); ++i)
+        if (m_ignored[i] != 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = ~m_home[i];
+    if (m_rows.empty()) return;
+    m_proximity.query_rows(x0, m_rows, boundary, m_near_home, StepEnd::start, &m_without);
+    m_keep.assign(m_home.size(), 0);
+    keep(boundary, x0, StepEnd::start);
+    keep(boundary, x1, StepEnd::end);
+    LimbSet kept = 0;
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_ignored[i] &= m_keep[i];
+        kept |= m_keep[i];
+    }
+    m_buried &= kept;
+}
+
+/// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
+void LimbOverlap::engage(const Boundary& boundary, const Points& x, StepEnd end) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_without[i] = m_home[i] | m_ignored[i];
+        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    }
+    while (!m_rows.empty()) {
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, &m_without);
+        m_next.clear();
+        for (const int i : m_rows) {
+            const auto vertex = static_cast<size_t>(i);
+            const LimbSet limb = limb_of(boundary, i) & ~m_without[vertex];
+            if (limb == 0 || std::abs(m_near.distance[i]) > m_settings.reach) continue;
+            m_without[vertex] |= limb;
+            m_next.push_back(i);
+            if (!(m_proximity.cover(m_near, i, end) > 0.0)) continue;
+            if ((strangers(vertex) & limb) != 0)
+                m_buried |= limb;
+            else
+                m_ignored[vertex] |= limb;
+        }
+        m_rows.swap(m_next);
+    }
+}
+
+void LimbOverlap::ignore_buried() {
+    if (m_buried == 0) return;
+    for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & strangers(i);
+}
+
+const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
+    if (!learn_limbs(boundary)) {
+        m_ignored.clear();
+        return boundary;
+    }
+    find_homes(boundary, state.x);
+    m_x = state.x + dt * state.v;
+    release(boundary, state.x, m_x);
+    ignore_buried();
+    engage(boundary, state.x, StepEnd::start);
+    engage(boundary, m_x, StepEnd::end);
+    ignore_buried();
+    const auto any = [](LimbSet limbs) { return limbs != 0; };
+    if (std::none_of(m_ignored.begin(), m_ignored.end(), any)) return boundary;
+    m_boundary = boundary;
+    m_boundary.ignored_limbs = m_ignored;
+    return m_boundary;
+}
+
+}  // namespace cloth
