@@ -58,6 +58,14 @@ void check(const GuardSettings& settings) {
         throw ArgumentError("GuardSettings::max_motion",
                             std::to_string(settings.max_motion) + " m is outside 0.01 to 1",
                             "use 0.1, the radius of the proximity query");
+    if (!(settings.max_entry >= 1e-3 && settings.max_entry <= 0.1))
+        throw ArgumentError("GuardSettings::max_entry",
+                            std::to_string(settings.max_entry) + " m is outside 0.001 to 0.1",
+                            "use 0.01");
+    if (!(settings.fine_motion >= 0.01 && settings.fine_motion <= 1.0))
+        throw ArgumentError("GuardSettings::fine_motion",
+                            std::to_string(settings.fine_motion) + " m is outside 0.01 to 1",
+                            "use 0.04");
     if (settings.max_substeps < 1 || settings.max_substeps > 64)
         throw ArgumentError("GuardSettings::max_substeps",
                             std::to_string(settings.max_substeps) + " is outside 1 to 64",
@@ -109,18 +117,39 @@ StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState&
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
-    const double parts = relative_motion(*m_garment, boundary, dt, state) / m_settings.max_motion;
-    int substeps = 1;  // powers of two, so that few matrices are factorised
-    while (substeps < parts && substeps < m_settings.max_substeps) substeps *= 2;
-    substeps = std::min(substeps, m_settings.max_substeps);
-    if (substeps == 1) {
-        const StepReport report = m_inner->step(boundary, dt, state);
-        if (report.finite || m_settings.max_substeps == 1) return report;
-        substeps = 2;
-    }
+    return guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+}
+
+StepReport GuardedStepper::guarded_step(const Boundary& boundary, double dt, ClothState& state) {
+    const double motion = relative_motion(*m_garment, boundary, dt, state);
+    const int foreseen = substeps_for(motion, m_settings.max_motion);
+    if (foreseen > 1) return cut_step(foreseen, boundary, dt, state);
+    m_before = state;
+    const StepReport report = m_inner->step(boundary, dt, state);
+    if (m_settings.max_substeps == 1) return report;
+    if (!report.finite) return cut_step(2, boundary, dt, state);
+    const int fine = substeps_for(motion, m_settings.fine_motion);
+    if (fine == 1 || !(report.max_entry > m_settings.max_entry)) return report;
+    std::swap(state, m_taken);
+    state = m_before;
+    const StepReport finer = cut_step(fine, boundary, dt, state);
+    if (finer.finite) return finer;
+    std::swap(state, m_taken);
+    return report;
+}
+
+StepReport GuardedStepper::cut_step(int substeps, const Boundary& boundary, double dt,
+                                    ClothState& state) {
     m_last_substeps = substeps;
     ++m_guarded_steps;
     return fallback(substeps).step(boundary, dt, state);
+}
+
+/// Powers of two, so that few matrices are factorised.
+int GuardedStepper::substeps_for(double motion, double most) const {
+    int substeps = 1;
+    while (substeps * most < motion && substeps < m_settings.max_substeps) substeps *= 2;
+    return std::min(substeps, m_settings.max_substeps);
 }
 
 Stepper& GuardedStepper::fallback(int substeps) {

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 
+#include "collision/limb_overlap.h"
 #include "gnn/physics/quasi_newton.h"
 #include "gnn/physics/substepped_stepper.h"
 
@@ -13,14 +14,20 @@ struct GuardSettings {
     /// to the garment) are cut, 0.01 to 1. Contacts are found at the start of a step within the
     /// proximity's radius: what comes from farther away would pass through.
     double max_motion = 0.1;
+    /// Steps that leave a vertex deeper inside an obstacle than this (m, before the last safety)
+    /// went past a surface: they are taken again in sub-steps of `fine_motion`, 1e-3 to 0.1.
+    double max_entry = 0.01;
+    double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
     int max_substeps = 16;                                                ///< 1 to 64
     QuasiNewtonSettings solver = QuasiNewtonSettings::controlled(5, 50);  ///< of a sub-step
 };
 
 /// Another stepper wherever it can be trusted, the quasi-Newton solver in sub-steps elsewhere:
-/// where obstacles or pins move too fast for one step, and where the step failed. A jump of the
-/// body by metres (teleport, cut in an animation) is cut into max_substeps parts like any fast
-/// motion.
+/// where obstacles or pins move too fast for one step, where the step failed, and where it went
+/// past a surface, such as a hand that swings through a hem. A jump of the body by metres
+/// (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
+///
+/// Limbs of a body that pass through each other are handled as LimbOverlap says, for any stepper.
 ///
 ///     GuardedStepper stepper(garment, std::make_unique<LearnedStepper>(garment, engine));
 ///
@@ -39,18 +46,25 @@ class GuardedStepper : public Stepper {
         return m_inner->internal_forces(x, forces);
     }
 
+    /// Limbs that each vertex ignored in the last step (|V|), or empty; see LimbOverlap.
+    const std::vector<LimbSet>& ignored_limbs() const { return m_limbs.ignored(); }
     /// Sub-steps of the last step; 1: the inner stepper's.
     int last_substeps() const { return m_last_substeps; }
     /// Steps so far that were not the inner stepper's.
     long guarded_steps() const { return m_guarded_steps; }
 
  private:
+    StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
+    StepReport cut_step(int substeps, const Boundary& boundary, double dt, ClothState& state);
+    int substeps_for(double motion, double most) const;
     Stepper& fallback(int substeps);
 
     const Garment* m_garment;
     std::unique_ptr<Stepper> m_inner;
     GuardSettings m_settings;
     std::map<int, std::unique_ptr<SubsteppedStepper>> m_fallbacks;  ///< by number of sub-steps
+    LimbOverlap m_limbs;
+    ClothState m_before, m_taken;  ///< of a step that is taken again
     int m_last_substeps = 1;
     long m_guarded_steps = 0;
 };

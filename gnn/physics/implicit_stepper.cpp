@@ -106,12 +106,13 @@ void ImplicitStepper::finish(const Boundary& boundary, StepReport& report) {
     if (boundary.obstacles.empty()) return;
     const Clock::time_point start = Clock::now();
     if (m_settings.safety_distance >= 0.0) {
-        report.max_penetration =
-            m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts)
-                .deepest_after();
+        const ResolveReport resolved =
+            m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts);
+        report.max_penetration = resolved.deepest_after();
+        report.max_entry = resolved.deepest_before();
     } else {
         m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
-        report.max_penetration = std::max(0.0, -m_distance.minCoeff());
+        report.max_entry = report.max_penetration = std::max(0.0, -m_distance.minCoeff());
     }
     report.times.contact = milliseconds_since(start);
 }

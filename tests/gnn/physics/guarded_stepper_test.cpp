@@ -21,6 +21,25 @@ class Failing : public Stepper {
     }
 };
 
+/// Says how deep it went past a surface.
+class Entering : public Stepper {
+ public:
+    explicit Entering(double entry) : m_entry(entry) {}
+    std::string name() const override { return "entering"; }
+    StepReport step(const Boundary& boundary, double h, ClothState& state) override {
+        ignored = boundary.ignored_limbs;
+        state.x.array() += 1.0;
+        state.time += h;
+        StepReport report;
+        report.max_entry = m_entry;
+        return report;
+    }
+    std::vector<LimbSet> ignored;
+
+ private:
+    double m_entry;
+};
+
 std::unique_ptr<Stepper> quasi_newton(const Garment& garment) {
     return std::make_unique<QuasiNewtonStepper>(garment, QuasiNewtonSettings{});
 }
@@ -120,6 +139,74 @@ TEST_F(Guard, AFailedStepIsMadeByTheSolver) {
     EXPECT_DOUBLE_EQ(m_state.time, dt);
 }
 
+TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};  // 7 cm: not too fast by itself
+    GuardedStepper guarded(m_garment, std::make_unique<Entering>(0.02));
+    ClothState by_hand = m_state;
+    ASSERT_TRUE(guarded.step(m_boundary, dt, m_state).finite);
+    EXPECT_EQ(guarded.last_substeps(), 2);
+    SubsteppedStepper(m_garment,
+                      std::make_unique<QuasiNewtonStepper>(m_garment, GuardSettings().solver), 2)
+        .step(m_boundary, dt, by_hand);
+    EXPECT_EQ(m_state.x, by_hand.x);
+    EXPECT_EQ(m_state.v, by_hand.v);
+    EXPECT_DOUBLE_EQ(m_state.time, dt);
+}
+
+TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheInnersAffair) {
+    const Points moved = m_state.x.array() + 1.0;
+    const auto expect_inner = [&](double entry, double motion) {
+        m_boundary.obstacles = {ball(-0.2, -0.2 + motion)};
+        ClothState state = m_state;
+        GuardedStepper guarded(m_garment, std::make_unique<Entering>(entry));
+        guarded.step(m_boundary, dt, state);
+        EXPECT_EQ(guarded.last_substeps(), 1);
+        EXPECT_EQ(state.x, moved);
+    };
+    expect_inner(0.005, 0.07);
+    expect_inner(0.02, 0.03);
+}
+
+TEST_F(Guard, SteppersSayHowDeepTheyWentPastASurface) {
+    m_boundary.obstacles = {ball(-0.3, -0.05)};  // at t it is out of reach
+    const StepReport report = quasi_newton(m_garment)->step(m_boundary, dt, m_state);
+    EXPECT_GT(report.max_entry, 0.03);
+    EXPECT_LT(report.max_entry, 0.051);
+    EXPECT_LT(report.max_penetration, 1e-3);
+}
+
+TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
+    // two blocks of one body in one place; the sheet is at home on the first
+    Obstacle body;
+    TriMesh block = make_sheet(0.3, 0.3, 100);
+    const Eigen::Index count = block.vertices.rows();
+    Faces faces(2 * block.faces.rows(), 3);
+    faces << block.faces, block.faces.array() + static_cast<int>(count);
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 0);
+    std::fill(limbs->begin() + block.faces.rows(), limbs->end(), 1);
+    body.faces = std::make_shared<const Faces>(faces);
+    body.limbs = limbs;
+    // both face along x; the second 3 cm behind the first
+    body.x0.resize(2 * count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vec3 at = block.vertices.row(i);
+        body.x0.row(i) << -0.01, at.z(), at.x();
+        body.x0.row(count + i) << -0.04, at.z(), at.x();
+    }
+    body.x1 = body.x0;
+    m_boundary.obstacles = {body};
+    auto inner = std::make_unique<Entering>(0.0);
+    const Entering& seen = *inner;
+    GuardedStepper guarded(m_garment, std::move(inner));
+    guarded.step(m_boundary, dt, m_state);
+    ASSERT_EQ(seen.ignored.size(), size_t(m_garment.vertex_count()));
+    EXPECT_EQ(seen.ignored, guarded.ignored_limbs());
+    EXPECT_EQ(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)),
+              std::count_if(seen.ignored.begin(), seen.ignored.end(),
+                            [](LimbSet set) { return set != 0; }));
+    EXPECT_GT(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)), 50);
+}
+
 TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
     GuardedStepper guarded(m_garment, quasi_newton(m_garment));
     const ClothState before = m_state;
@@ -150,6 +237,12 @@ TEST_F(Guard, SubstepsObeyThePhysicsOfTheStep) {
 TEST_F(Guard, RefusesSettingsOutOfRange) {
     GuardSettings settings;
     settings.max_motion = 0.0;
+    EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
+    settings = {};
+    settings.max_entry = 0.0;
+    EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
+    settings = {};
+    settings.fine_motion = std::nan("");
     EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
     settings = {};
     settings.max_substeps = 0;
