@@ -317,10 +317,11 @@ const cloth::StepReport* btGnnSoftBodySolver::reportOf(const btSoftBody* body) c
     return it != m_entries.end() && it->second.step ? &it->second.step->lastReport() : nullptr;
 }
 
-void btGnnSoftBodySolver::setAnimatedObstacle(const btCollisionObject* object,
-                                              std::shared_ptr<const cloth::Faces> faces,
-                                              cloth::Points x0, cloth::Points x1, double duration) {
-    m_obstacles.setAnimated(object, {std::move(faces), std::move(x0), std::move(x1), duration});
+void btGnnSoftBodySolver::setAnimatedObstacle(
+    const btCollisionObject* object, std::shared_ptr<const cloth::Faces> faces, cloth::Points x0,
+    cloth::Points x1, double duration, std::shared_ptr<const std::vector<std::uint8_t>> limbs) {
+    m_obstacles.setAnimated(
+        object, {std::move(faces), std::move(x0), std::move(x1), duration, std::move(limbs)});
 }
 
 void btGnnSoftBodySolver::removeAnimatedObstacle(const btCollisionObject* object) {

@@ -110,9 +110,13 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// @param faces     (|F| x 3), the same pointer in every call
     /// @param x0, x1    vertices now and after `duration` seconds (|V| x 3, m, world frame)
     /// @param duration  usually the time of the stepSimulation() that follows; 0: one sub-step
+    /// @param limbs     limb of each face (|F|, 0 to 31), the same pointer in every call, or null.
+    ///                  With them, cloth passes through limbs that are inside other limbs instead
+    ///                  of being dragged along: see cloth::LimbOverlap
     void setAnimatedObstacle(const btCollisionObject* object,
                              std::shared_ptr<const cloth::Faces> faces, cloth::Points x0,
-                             cloth::Points x1, double duration = 0.0);
+                             cloth::Points x1, double duration = 0.0,
+                             std::shared_ptr<const std::vector<std::uint8_t>> limbs = nullptr);
     /// Call before the object is deleted.
     void removeAnimatedObstacle(const btCollisionObject* object);
 

@@ -125,6 +125,12 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
     if (mesh.faces->minCoeff() < 0 || mesh.faces->maxCoeff() >= mesh.x0.rows())
         throw ArgumentError("animated obstacle", "a face refers to a vertex that does not exist",
                             "number vertices from 0 to |V| - 1");
+    if (mesh.limbs && (mesh.limbs->size() != static_cast<size_t>(mesh.faces->rows()) ||
+                       *std::max_element(mesh.limbs->begin(), mesh.limbs->end()) >= max_limbs))
+        throw ArgumentError("animated obstacle",
+                            "has not one limb from 0 to 31 for each of its " +
+                                std::to_string(mesh.faces->rows()) + " faces",
+                            "number the limb of each face, or leave limbs away");
     if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0))
         throw ArgumentError("animated obstacle", "vertices or duration are not finite",
                             "check the animation before handing it over");
@@ -214,6 +220,7 @@ void BulletObstacles::append(const Animation& animation, double friction, const 
     };
     Obstacle obstacle;
     obstacle.faces = mesh.faces;
+    obstacle.limbs = mesh.limbs;
     obstacle.x0 = at(span.begin);
     obstacle.x1 = at(span.begin + span.length);
     obstacle.friction = friction;

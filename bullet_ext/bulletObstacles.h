@@ -28,6 +28,7 @@ struct AnimatedMesh {
     Points x0;                           ///< vertices now (|V| x 3, m, world frame)
     Points x1;                           ///< vertices after `duration` (|V| x 3, m, world frame)
     double duration = 0.0;               ///< from x0 to x1 (s); 0: one world step
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs = {};  ///< see Obstacle; or null
 };
 
 /// A solid as it is at one moment.

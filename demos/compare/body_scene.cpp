@@ -23,7 +23,9 @@ static Garment load_garment(const BodySceneSettings& settings) {
 
 BodyScene::BodyScene(const BodySceneSettings& settings) : ComparisonScene(load_garment(settings)) {
     const auto body = std::make_shared<const Body>(Body::load_default());
-    m_body = std::make_unique<AnimatedBody>(body, load_motion_by_name(settings.motion));
+    AnimationSettings animation;
+    animation.limbs = settings.limbs;
+    m_body = std::make_unique<AnimatedBody>(body, load_motion_by_name(settings.motion), animation);
     m_lead_in_frames = static_cast<int>(std::lround(m_body->settings().lead_in / frame_time));
     const int available = m_body->frame_count(frame_time) - 1 - m_lead_in_frames;
     if (available < 1)

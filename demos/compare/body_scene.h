@@ -15,6 +15,7 @@ struct BodySceneSettings {
     std::string motion = "01_01";
     int frames = 90;            ///< of the motion; 0: all
     int reference_frames = 30;  ///< frames with references; 0: all
+    bool limbs = false;         ///< cloth passes through limbs that pass through others
 };
 
 /// A garment on a moving body. The clock starts with the motion; in the lead-in the body moves from
@@ -32,6 +33,7 @@ class BodyScene : public ComparisonScene {
     Boundary boundary(double t0, double t1) const override;
     int lead_in_frames() const override { return m_lead_in_frames; }
     std::vector<BodySegment> segments() const override;
+    bool has_limbs() const override { return m_body->limbs() != nullptr; }
     /// "slid off the body": the garment's middle is 0.3 m from the middle of the skin that it
     /// covers at rest, however the body bends.
     std::string loss(const Boundary& boundary, const Points& x) const override;

@@ -38,6 +38,9 @@ class ComparisonScene {
     /// Whether the garment keeps off itself; solvers that know nothing of it go without.
     virtual SelfContactSettings self_contact() const { return {}; }
 
+    /// Whether obstacles have limbs that cloth may pass through, see LimbOverlap.
+    virtual bool has_limbs() const { return false; }
+
     /// Hulls of the animated body for Bullet's own solver; none: Bullet has the obstacles' shapes.
     virtual std::vector<BodySegment> segments() const { return {}; }
 

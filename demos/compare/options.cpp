@@ -4,8 +4,13 @@
 
 namespace cloth {
 BodySceneSettings scene_settings(const CompareOptions& options) {
-    return {options.garment, options.fabric, options.motion, options.frames,
-            options.reference_frames};
+    BodySceneSettings scene;
+    scene.garment = options.garment;
+    scene.fabric = options.fabric;
+    scene.motion = options.motion;
+    scene.frames = options.frames;
+    scene.reference_frames = options.reference_frames;
+    return scene;
 }
 
 SolverSettings solver_settings(const CompareOptions& options) {

@@ -137,6 +137,15 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
     return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), guard);
 }
 
+std::unique_ptr<Stepper> make_own_solver(const std::string& name, const ComparisonScene& scene,
+                                         const SolverSettings& settings) {
+    if (name == "reference" || name == "reference" + bdf2 || starts_with(name, "newton"))
+        return make_newton(name, scene);
+    if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
+    if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
+    return make_network(name, scene, settings);
+}
+
 }  // namespace
 
 NetworkName::NetworkName(const std::string& name)
@@ -173,11 +182,11 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
                                                     scene.segments());
-    if (name == "reference" || name == "reference" + bdf2 || starts_with(name, "newton"))
-        return make_newton(name, scene);
-    if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
-    if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
-    return make_network(name, scene, settings);
+    std::unique_ptr<Stepper> stepper = make_own_solver(name, scene, settings);
+    if (!scene.has_limbs() || dynamic_cast<GuardedStepper*>(stepper.get())) return stepper;
+    GuardSettings limbs_alone;
+    limbs_alone.max_substeps = 1;
+    return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), limbs_alone);
 }
 
 }  // namespace cloth

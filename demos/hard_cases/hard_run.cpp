@@ -7,6 +7,7 @@
 
 #include "collision/metrics.h"
 #include "collision/self_tangles.h"
+#include "gnn/physics/guarded_stepper.h"
 
 namespace cloth {
 namespace {
@@ -75,10 +76,13 @@ class HardMeter {
     }
 
     void measure(int frame, const Points& before) {
-        const Boundary outside = m_scene.boundary_of_frame(frame);
+        Boundary outside = m_scene.boundary_of_frame(frame);
         const Garment& garment = m_scene.garment();
         const Points motion = m_state.x - before;
+        if (const auto* guarded = dynamic_cast<const GuardedStepper*>(&m_stepper))
+            outside.ignored_limbs = guarded->ignored_limbs();
         m_run.penetration_mm.push_back(1e3 * deepest_free_vertex(outside));
+        outside.ignored_limbs.clear();
         m_run.surface_mm.push_back(
             1e3 * measure_penetration(m_proximity, outside, garment, m_state.x).max_depth);
         m_run.stretch_p99.push_back(measure_stretch(garment, m_state.x).p99);

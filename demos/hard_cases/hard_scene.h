@@ -19,6 +19,7 @@ struct HardSceneParts {
     /// Why a garment at x does not belong to the scene any more, such as "fell through"; optional.
     std::function<std::string(const Boundary&, const Points& x)> loss = nullptr;
     SelfContactSettings self_contact = {};
+    bool limbs = false;  ///< of obstacles: cloth may pass through them, see LimbOverlap
 };
 
 /// A hard case as all solvers of the reports are given their scenes. Frames are as long as the
@@ -38,6 +39,7 @@ class HardScene : public ComparisonScene {
         return boundary(frame * dt(), (frame + 1) * dt());
     }
     SelfContactSettings self_contact() const override { return m_parts.self_contact; }
+    bool has_limbs() const override { return m_parts.limbs; }
     std::vector<BodySegment> segments() const override { return m_parts.segments; }
     std::string loss(const Boundary& boundary, const Points& x) const override {
         return m_parts.loss ? m_parts.loss(boundary, x) : std::string();

@@ -66,7 +66,7 @@ void run(const HardCaseOptions& options) {
     };
     for (const std::string& name : options.cases) run_one(hard_case(name));
     for (const std::string& motion : with_folders_listed(options.motions))
-        run_one(motion_case(motion, options.garment));
+        run_one(motion_case(motion, options.garment, options.limbs));
     for (const HardRow& row : report.rows()) std::printf("%s\n", text_line(row).c_str());
     if (options.markdown) std::printf("\n%s", markdown(report.rows()).c_str());
     std::printf("%s/hard_cases.json\n", options.out.c_str());

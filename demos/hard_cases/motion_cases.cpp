@@ -12,9 +12,10 @@
 namespace cloth {
 namespace {
 
-std::shared_ptr<const BodyScene> whole_motion(const std::string& motion,
-                                              const std::string& garment) {
+std::shared_ptr<const BodyScene> whole_motion(const std::string& motion, const std::string& garment,
+                                              bool limbs = false) {
     BodySceneSettings settings;
+    settings.limbs = limbs;
     settings.motion = motion;
     settings.garment = garment;
     settings.frames = 0;
@@ -29,6 +30,7 @@ HardSceneParts parts_of(const std::shared_ptr<const BodyScene>& scene,
                              return scene->boundary(scene_time(t0), scene_time(t1));
                          }};
     parts.segments = scene->segments();
+    parts.limbs = scene->has_limbs();
     parts.loss = [scene](const Boundary& boundary, const Points& x) {
         return scene->loss(boundary, x);
     };
@@ -41,10 +43,11 @@ double lead_in(const BodyScene& scene) {
 
 }  // namespace
 
-HardCase motion_case(const std::string& motion, const std::string& garment) {
-    const std::shared_ptr<const BodyScene> scene = whole_motion(motion, garment);
+HardCase motion_case(const std::string& motion, const std::string& garment, bool limbs) {
+    const std::shared_ptr<const BodyScene> scene = whole_motion(motion, garment, limbs);
     HardCase hard;
     hard.name = "motion-" + std::filesystem::path(motion).stem().string();
+    if (limbs) hard.name += "-limbs";
     hard.sentence = garment + " on a body in the motion " + motion;
     hard.frames = scene->lead_in_frames() + scene->frames();
     hard.bounds.reason = "1.1 times the reference";

@@ -16,6 +16,9 @@ std::string hard_cases_usage() {
            "                       BVH files or folders of them. Stretch may be 1.1 times that of\n"
            "                       the reference, if it is named first in --steppers\n"
            "  --garment NAME       for --motions: tshirt_1000 (default), tshirt_2000, tshirt\n"
+           "  --limbs              for --motions: cloth passes through limbs that are inside "
+           "other\n"
+           "                       limbs; depth is then that inside all others\n"
            "  --steppers A,B,...   reference, newton-K, quasi-newton-K, quasi-newton-KxS, xpbd-N,\n"
            "                       bullet, bullet-fine, bullet-KxS, or a network NAME[+K]\n"
            "  --frames-scale S     runs S times the frames of each case (default 1); the bounds "
@@ -59,11 +62,10 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
     HardCaseOptions options;
     options.steppers = default_hard_case_steppers();
     bool no_pictures = false;
-    const std::map<std::string, bool*> flags = {{"--soak", &options.soak},
-                                                {"--list", &options.list},
-                                                {"--markdown", &options.markdown},
-                                                {"--resume", &options.resume},
-                                                {"--no-pictures", &no_pictures}};
+    const std::map<std::string, bool*> flags = {
+        {"--soak", &options.soak},         {"--list", &options.list},
+        {"--markdown", &options.markdown}, {"--resume", &options.resume},
+        {"--limbs", &options.limbs},       {"--no-pictures", &no_pictures}};
     for (size_t i = 0; i < arguments.size(); ++i) {
         const std::string& option = arguments[i];
         if (option == "--help" || option == "-h") throw UsageError(hard_cases_usage());

@@ -209,6 +209,20 @@ TEST(BulletObstacles, AnimatedMeshReplacesTheShapeAndIsInterpolated) {
     EXPECT_EQ(scene.obstacles().at(0).shape, ObstacleShape::sphere);
 }
 
+TEST(BulletObstacles, LimbsOfAnAnimatedMeshReachTheStepper) {
+    Scene scene;
+    btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
+    const auto limbs = std::make_shared<const std::vector<std::uint8_t>>(1, std::uint8_t(3));
+    scene.solver.setAnimatedObstacle(handle, one_face(), triangle(0), triangle(0), 0.0, limbs);
+    scene.world.step(1.0 / 60.0);
+    EXPECT_EQ(scene.obstacles().at(0).limbs, limbs);
+    for (const std::vector<std::uint8_t>& wrong : {std::vector<std::uint8_t>{1, 2}, {32}, {}})
+        EXPECT_THROW(scene.solver.setAnimatedObstacle(
+                         handle, one_face(), triangle(0), triangle(0), 0.0,
+                         std::make_shared<const std::vector<std::uint8_t>>(wrong)),
+                     ArgumentError);
+}
+
 TEST(BulletObstacles, BadAnimatedMeshesAreRefused) {
     Scene scene;
     btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);

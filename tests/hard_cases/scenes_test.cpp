@@ -7,10 +7,13 @@
 
 #include "collision/proximity.h"
 #include "data/mesh_quality.h"
+#include "demos/compare/solver_factory.h"
 #include "demos/hard_cases/hard_cases.h"
+#include "demos/hard_cases/hard_run.h"
 #include "demos/hard_cases/motion_cases.h"
 #include "demos/hard_cases/odd_meshes.h"
 #include "demos/hard_cases/pictures.h"
+#include "gnn/physics/guarded_stepper.h"
 
 using namespace cloth;
 
@@ -67,6 +70,40 @@ TEST(HardScenes, AMotionIsPlayedFromTheRestPoseToItsEnd) {
     EXPECT_LT((beyond - last).rowwise().norm().maxCoeff(), 0.1);
     EXPECT_EQ(hard.name, "motion-01_01");
     EXPECT_GT(hard.stretch_of_reference, 1.0);
+}
+
+TEST(HardScenes, MotionsMayLetLimbsPass) {
+    const HardCase hard = motion_case("Boxing_Toes", "tshirt_1000", /*limbs=*/true);
+    EXPECT_EQ(hard.name, "motion-Boxing_Toes-limbs");
+    const HardScene scene(hard.parts(), 30);
+    EXPECT_TRUE(scene.has_limbs());
+    EXPECT_NE(scene.boundary_of_frame(0).obstacles[0].limbs, nullptr);
+    for (const char* name : {"quasi-newton", "small", "reference", "quasi-newton-3", "xpbd-10"})
+        EXPECT_NE(dynamic_cast<GuardedStepper*>(make_solver(name, scene, {}).get()), nullptr)
+            << name;
+    EXPECT_FALSE(HardScene(motion_case("Boxing_Toes", "tshirt_1000").parts(), 1).has_limbs());
+}
+
+/// An arm that goes into the chest takes no cloth along, whatever the number of threads.
+TEST(HardScenes, ClothLetsABuriedArmPass) {
+    const HardCase hard = motion_case("Boxing_Toes", "tshirt_1000", /*limbs=*/true);
+    const HardScene scene(hard.parts(), 32);
+    const HardCase held = [&] {
+        HardCase bounded = hard;
+        bounded.bounds.stretch_p99 = 1.25;
+        return bounded;
+    }();
+    std::vector<Points> ends;
+    for (const int threads : {1, 2}) {
+        const auto stepper = make_solver("small", scene, {"", threads, nullptr});
+        const HardRun run = run_hard_case(held, scene, *stepper, [](int) {});
+        EXPECT_TRUE(run.held()) << run.failure;
+        const auto& ignored = dynamic_cast<GuardedStepper&>(*stepper).ignored_limbs();
+        EXPECT_GT(std::count_if(ignored.begin(), ignored.end(), [](LimbSet set) { return set; }),
+                  500);
+        ends.push_back(run.x.back());
+    }
+    EXPECT_EQ(ends[0], ends[1]);
 }
 
 TEST(HardScenes, DressHas12000Vertices) {
