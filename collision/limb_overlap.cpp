@@ -16,7 +16,11 @@ void check(const char* field, double value, double low, double high) {
 }
 
 LimbSet only(size_t limb) {
-    return limb < max_limbs ? LimbSet(1) << limb : 0;
+    return LimbSet(1) << limb;
+}
+
+bool are_in_range(const std::vector<std::uint8_t>& limbs) {
+    return std::all_of(limbs.begin(), limbs.end(), [](int limb) { return limb < max_limbs; });
 }
 
 }  // namespace
@@ -31,7 +35,7 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(setti
 bool LimbOverlap::learn_limbs(const Boundary& boundary) {
     m_found.clear();
     for (const Obstacle& obstacle : boundary.obstacles)
-        if (has_limbs(obstacle)) m_found.push_back(obstacle.limbs);
+        if (has_limbs(obstacle) && are_in_range(*obstacle.limbs)) m_found.push_back(obstacle.limbs);
     std::sort(m_found.begin(), m_found.end());
     if (m_found != m_known) {
         m_known = m_found;
@@ -39,9 +43,14 @@ bool LimbOverlap::learn_limbs(const Boundary& boundary) {
         m_home.clear();
         m_buried = 0;
         for (const Obstacle& obstacle : boundary.obstacles)
-            if (has_limbs(obstacle)) add_joints(obstacle);
+            if (is_known(obstacle)) add_joints(obstacle);
     }
     return !m_known.empty();
+}
+
+bool LimbOverlap::is_known(const Obstacle& obstacle) const {
+    return has_limbs(obstacle) &&
+           std::find(m_known.begin(), m_known.end(), obstacle.limbs) != m_known.end();
 }
 
 /// Limbs are joined where their faces share a vertex.
@@ -62,7 +71,7 @@ LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
     const auto i = static_cast<size_t>(vertex);
     if (!m_near.has(vertex) || m_near.face[i] < 0) return 0;
     const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(m_near.obstacle[i])];
-    if (!has_limbs(obstacle)) return 0;
+    if (!is_known(obstacle)) return 0;
     return only((*obstacle.limbs)[static_cast<size_t>(m_near.face[i])]);
 }
 

@@ -48,6 +48,7 @@ class LimbOverlap {
     using Limbs = std::shared_ptr<const std::vector<std::uint8_t>>;
 
     bool learn_limbs(const Boundary& boundary);
+    bool is_known(const Obstacle& obstacle) const;
     void add_joints(const Obstacle& obstacle);
     void find_homes(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);

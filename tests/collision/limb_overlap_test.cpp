@@ -150,6 +150,18 @@ TEST(LimbOverlap, AnotherBodyIsLearntAnew) {
     EXPECT_EQ(ignoring(limbs.filter(other.boundary(0.17, 0.17), dt, coarse), arm), x.rows());
 }
 
+TEST(LimbOverlap, UnusableLimbsAreNone) {
+    const TwoLimbs body(false);
+    const ClothState state = shell();
+    Boundary boundary = body.boundary(0.17, 0.17);
+    auto wrong = std::make_shared<std::vector<std::uint8_t>>(*boundary.obstacles[0].limbs);
+    wrong->back() = 32;
+    boundary.obstacles[0].limbs = wrong;
+    EXPECT_EQ(&LimbOverlap().filter(boundary, dt, state), &boundary);
+    wrong->resize(3);
+    EXPECT_EQ(&LimbOverlap().filter(boundary, dt, state), &boundary);
+}
+
 TEST(LimbOverlap, OtherObstaclesMayComeAndGo) {
     const TwoLimbs body(false);
     LimbOverlap limbs;
