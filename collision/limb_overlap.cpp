@@ -28,6 +28,7 @@ bool are_in_range(const std::vector<std::uint8_t>& limbs) {
 LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
     check("reach", settings.reach, 0.01, 0.1);
     check("margin", settings.margin, 1e-3, 0.05);
+    check("least_cover", settings.least_cover, 0.0, 0.2);
 }
 
 /// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
@@ -160,11 +161,12 @@ void LimbOverlap::engage(const Boundary& boundary, const Points& x, StepEnd end)
             if (limb == 0 || std::abs(m_near.distance[i]) > m_settings.reach) continue;
             m_without[vertex] |= limb;
             m_next.push_back(i);
-            if (!(m_proximity.cover(m_near, i, end) > 0.0)) continue;
-            if ((strangers(vertex) & limb) != 0)
+            const double cover = m_proximity.cover(m_near, i, end);
+            if ((strangers(vertex) & limb) == 0) {
+                if (cover > m_settings.least_cover) m_ignored[vertex] |= limb;
+            } else if (cover > 0.0) {
                 m_buried |= limb;
-            else
-                m_ignored[vertex] |= limb;
+            }
         }
         m_rows.swap(m_next);
     }

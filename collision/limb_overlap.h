@@ -13,6 +13,9 @@ struct LimbOverlapSettings {
     double reach = 0.05;   ///< limbs farther from a vertex (m) are not looked at, 0.01 to 0.1
     double margin = 0.01;  ///< a limb that was ignored is touched again when it is clear of the
                            ///< vertex by this (m), 1e-3 to 0.05
+    double least_cover = 0.04;  ///< joined limbs are folded where this much of the one (m) lies
+                                ///< over the skin of the other, 0 to 0.2; less is a crease, whose
+                                ///< sides cloth keeps touching
 };
 
 /// Contact with a body whose limbs pass through each other, as those of motion that was captured

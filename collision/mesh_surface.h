@@ -51,9 +51,9 @@ class MeshSurface {
     SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack,
                        LimbSet ignored = 0) const;
 
-    /// How deep (m, along the face's normal) a point of a face lies inside another part of the
-    /// mesh; 0: it does not, for what the ray along the normal meets first (within `length`) is
-    /// seen from outside.
+    /// How much (m, along the face's normal) of another part of the mesh lies over a point of a
+    /// face; 0: nothing, for what the ray along the normal meets first (within `length`) is seen
+    /// from outside.
     double cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack) const;
 
     const std::shared_ptr<const Faces>& faces() const { return m_faces; }

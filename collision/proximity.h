@@ -87,8 +87,8 @@ class Proximity {
     /// Boundary::ignored_limbs is used if it has as many rows.
     void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
 
-    /// How deep (m) row i's surface point lies inside another part of its own mesh; 0: outside. To
-    /// be asked right after the query, for the same end.
+    /// How much (m, along the normal) of another part of its own mesh lies over row i's surface
+    /// point; 0: nothing within half a metre. To be asked right after the query, for the same end.
     double cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at);
 
     /// Mesh hierarchies that are kept at present.

@@ -118,16 +118,33 @@ TEST(LimbOverlap, AJoinedLimbIsIgnoredOnlyWhereItFoldsIn) {
     }
 }
 
+/// Cloth that hugs the arm, 2 mm off.
+ClothState sleeve(double x) {
+    const Points points = (0.052 * icosphere(2).vertices).rowwise() + Eigen::RowVector3d(x, 0, 0);
+    return {points, Points::Zero(points.rows(), 3)};
+}
+
+TEST(LimbOverlap, ACreaseOfJoinedLimbsIsContact) {
+    const TwoLimbs body(true);
+    const auto ignoring_trunk = [&](double least_cover) {
+        LimbOverlapSettings settings;
+        settings.least_cover = least_cover;
+        LimbOverlap limbs(settings);
+        limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+        return ignoring(limbs.filter(body.boundary(0.17, 0.17), dt, sleeve(0.17)), trunk);
+    };
+    EXPECT_GT(ignoring_trunk(0.04), 10);
+    EXPECT_EQ(ignoring_trunk(0.1), 0);  // the arm lies 7 cm thick over the trunk's skin
+}
+
 TEST(LimbOverlap, ClothAtHomeOnTheLimbKeepsToIt) {
     const TwoLimbs body(false);
     LimbOverlap limbs;
-    const Points x = (0.052 * icosphere(2).vertices).rowwise() + Eigen::RowVector3d(0.3, 0, 0);
-    ClothState sleeve{x, Points::Zero(x.rows(), 3)};
-    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve);
-    sleeve.x.col(0).array() -= 0.13;
-    const Boundary& outside = limbs.filter(body.boundary(0.17, 0.17), dt, sleeve);
+    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+    const ClothState moved = sleeve(0.17);
+    const Boundary& outside = limbs.filter(body.boundary(0.17, 0.17), dt, moved);
     EXPECT_EQ(ignoring(outside, arm), 0);
-    EXPECT_EQ(ignoring(outside, trunk), sleeve.x.rows());
+    EXPECT_EQ(ignoring(outside, trunk), moved.x.rows());
 }
 
 TEST(LimbOverlap, FarClothHasNoHomeAndIgnoresNothing) {
@@ -178,8 +195,8 @@ TEST(LimbOverlap, OtherObstaclesMayComeAndGo) {
 
 TEST(LimbOverlap, SettingsOutOfRangeAreNamed) {
     for (const LimbOverlapSettings wrong :
-         {LimbOverlapSettings{0.5, 0.01}, LimbOverlapSettings{0.05, 0.0},
-          LimbOverlapSettings{std::nan(""), 0.01}})
+         {LimbOverlapSettings{0.5, 0.01, 0.04}, LimbOverlapSettings{0.05, 0.0, 0.04},
+          LimbOverlapSettings{std::nan(""), 0.01, 0.04}, LimbOverlapSettings{0.05, 0.01, -1.0}})
         EXPECT_THROW(LimbOverlap{wrong}, ArgumentError);
 }
 

@@ -1,4 +1,4 @@
-// Queries that pass over limbs, and the depth of skin inside other limbs.
+// Queries that pass over limbs, and how much lies over skin inside other limbs.
 
 #include <gtest/gtest.h>
 
@@ -114,7 +114,7 @@ TEST(Limbs, TheBoundarySaysWhatVerticesIgnore) {
     EXPECT_TRUE(contacts.has(0) && contacts.has(1));
 }
 
-TEST(Limbs, CoverIsTheDepthInsideAnotherPart) {
+TEST(Limbs, CoverIsWhatLiesOverAPoint) {
     // two balls of radius 0.2 in one mesh, 0.3 apart along x
     const double radius = 0.2;
     const Vec3 centre(0.3, 0, 0);
