@@ -26,7 +26,6 @@ struct ResolveReport {
     int iterations = 0;                     ///< for the vertices alone; 0: none was closer
     int surface_iterations = 0;             ///< for edges and faces; 0: none was too deep
 
-    double deepest_before() const { return max_depth_before; }
     double deepest_after() const { return std::max(max_depth_after, max_surface_depth_after); }
 };
 

@@ -24,8 +24,8 @@ struct StepReport {
     bool converged = false;        ///< the stepper's own tolerance was met
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
-    double max_entry = 0.0;  ///< the same before the last safety pushed it out (m): a contact that
-                             ///< the step did not foresee
+    double max_entry = 0.0;  ///< deepest vertex before the last safety pushed it out (m): a contact
+                             ///< that the step did not foresee
     bool finite = true;            ///< false: the state was left as it was before the step
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only

@@ -138,7 +138,7 @@ bool LearnedStepper::accept(const Boundary& boundary, double dt, ClothState& sta
         m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved);
     if (!m_x.allFinite()) return false;
     report.max_penetration = resolved.deepest_after();
-    report.max_entry = resolved.deepest_before();
+    report.max_entry = resolved.max_depth_before;
     m_layers.finish(state.x, m_proximity, boundary, m_settings.safety_distance, m_x, m_resolved,
                     report);
     m_v = (m_x - state.x) / dt;

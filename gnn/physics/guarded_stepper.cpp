@@ -124,18 +124,20 @@ StepReport GuardedStepper::guarded_step(const Boundary& boundary, double dt, Clo
     const double motion = relative_motion(*m_garment, boundary, dt, state);
     const int foreseen = substeps_for(motion, m_settings.max_motion);
     if (foreseen > 1) return cut_step(foreseen, boundary, dt, state);
-    m_before = state;
+    const int fine = substeps_for(motion, m_settings.fine_motion);
+    if (fine > 1) m_before = state;
     const StepReport report = m_inner->step(boundary, dt, state);
     if (m_settings.max_substeps == 1) return report;
     if (!report.finite) return cut_step(2, boundary, dt, state);
-    const int fine = substeps_for(motion, m_settings.fine_motion);
     if (fine == 1 || !(report.max_entry > m_settings.max_entry)) return report;
-    std::swap(state, m_taken);
-    state = m_before;
-    const StepReport finer = cut_step(fine, boundary, dt, state);
-    if (finer.finite) return finer;
-    std::swap(state, m_taken);
-    return report;
+    const StepReport finer = cut_step(fine, boundary, dt, m_before);
+    if (!finer.finite) {  // better the first step than none
+        m_last_substeps = 1;
+        --m_guarded_steps;
+        return report;
+    }
+    std::swap(state, m_before);
+    return finer;
 }
 
 StepReport GuardedStepper::cut_step(int substeps, const Boundary& boundary, double dt,

@@ -64,7 +64,7 @@ class GuardedStepper : public Stepper {
     GuardSettings m_settings;
     std::map<int, std::unique_ptr<SubsteppedStepper>> m_fallbacks;  ///< by number of sub-steps
     LimbOverlap m_limbs;
-    ClothState m_before, m_taken;  ///< of a step that is taken again
+    ClothState m_before;  ///< from which a step is taken again
     int m_last_substeps = 1;
     long m_guarded_steps = 0;
 };

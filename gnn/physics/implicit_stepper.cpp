@@ -109,7 +109,7 @@ void ImplicitStepper::finish(const Boundary& boundary, StepReport& report) {
         const ResolveReport resolved =
             m_resolver.resolve(m_proximity, boundary, m_settings.safety_distance, m_x, m_contacts);
         report.max_penetration = resolved.deepest_after();
-        report.max_entry = resolved.deepest_before();
+        report.max_entry = resolved.max_depth_before;
     } else {
         m_proximity.signed_distance(m_x, boundary, StepEnd::end, m_distance);
         report.max_entry = report.max_penetration = std::max(0.0, -m_distance.minCoeff());

@@ -98,7 +98,7 @@ void QuasiNewtonStepper::resolve(const Boundary& boundary, StepReport& report) {
     const ResolveReport resolved =
         m_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
-    report.max_entry = resolved.deepest_before();
+    report.max_entry = resolved.max_depth_before;
 }
 
 }  // namespace cloth

@@ -187,7 +187,7 @@ void XpbdStepper::resolve(const Boundary& boundary, double dt, StepReport& repor
     const ResolveReport resolved =
         m_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
-    report.max_entry = resolved.deepest_before();
+    report.max_entry = resolved.max_depth_before;
     for (size_t k = 0; k < m_contacts.obstacle.size(); ++k) {
         const Eigen::Index i = static_cast<Eigen::Index>(k);
         if (!m_contacts.has(i) || m_x.row(i) == m_p.row(i).head<3>()) continue;

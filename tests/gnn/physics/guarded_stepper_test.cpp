@@ -167,6 +167,17 @@ TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheInnersAffair) {
     expect_inner(0.02, 0.03);
 }
 
+TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};
+    const Points moved = m_state.x.array() + 1.0;
+    GuardedStepper guarded(m_garment, std::make_unique<Entering>(0.02));
+    const double too_short = 1e-200;  // for any solver: 1 / dt^2 overflows
+    EXPECT_TRUE(guarded.step(m_boundary, too_short, m_state).finite);
+    EXPECT_EQ(m_state.x, moved);
+    EXPECT_EQ(guarded.last_substeps(), 1);
+    EXPECT_EQ(guarded.guarded_steps(), 0);
+}
+
 TEST_F(Guard, SteppersSayHowDeepTheyWentPastASurface) {
     m_boundary.obstacles = {ball(-0.3, -0.05)};  // at t it is out of reach
     const StepReport report = quasi_newton(m_garment)->step(m_boundary, dt, m_state);
