@@ -76,17 +76,11 @@ LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
     return only((*obstacle.limbs)[static_cast<size_t>(m_near.face[i])]);
 }
 
-LimbSet LimbOverlap::strangers(size_t vertex) const {
-    LimbSet known = 0;
-    for (size_t limb = 0; limb < max_limbs; ++limb)
-        if ((m_home[vertex] & only(limb)) != 0) known |= m_joined[limb];
-    return m_home[vertex] != 0 ? ~known : 0;
-}
-
 void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
     const auto count = static_cast<size_t>(x.rows());
     if (m_home.size() != count) {
         m_home.assign(count, 0);
+        m_strangers.assign(count, 0);
         m_ignored.assign(count, 0);
         m_without.assign(count, 0);
         m_proximity.query(x, boundary, m_near);
@@ -97,7 +91,12 @@ void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
         if (m_home[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
     if (m_rows.empty()) return;
     m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, &m_without);
-    for (const int i : m_rows) m_home[static_cast<size_t>(i)] = limb_of(boundary, i);
+    for (const int i : m_rows) {
+        const auto vertex = static_cast<size_t>(i);
+        m_home[vertex] = limb_of(boundary, i);
+        for (size_t limb = 0; limb < max_limbs; ++limb)
+            if (m_home[vertex] == only(limb)) m_strangers[vertex] = ~m_joined[limb];
+    }
 }
 
 /// Whether the vertex is outside of the limb in m_near, with room between limb and home.
@@ -162,7 +161,7 @@ void LimbOverlap::engage(const Boundary& boundary, const Points& x, StepEnd end)
             m_without[vertex] |= limb;
             m_next.push_back(i);
             const double cover = m_proximity.cover(m_near, i, end);
-            if ((strangers(vertex) & limb) == 0) {
+            if ((m_strangers[vertex] & limb) == 0) {
                 if (cover > m_settings.least_cover) m_ignored[vertex] |= limb;
             } else if (cover > 0.0) {
                 m_buried |= limb;
@@ -174,7 +173,7 @@ void LimbOverlap::engage(const Boundary& boundary, const Points& x, StepEnd end)
 
 void LimbOverlap::ignore_buried() {
     if (m_buried == 0) return;
-    for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & strangers(i);
+    for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & m_strangers[i];
 }
 
 const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {

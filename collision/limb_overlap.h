@@ -59,7 +59,6 @@ class LimbOverlap {
     bool is_clear(int vertex, StepEnd end);
     void engage(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_buried();
-    LimbSet strangers(size_t vertex) const;
     LimbSet limb_of(const Boundary& boundary, int vertex) const;
 
     LimbOverlapSettings m_settings;
@@ -68,6 +67,7 @@ class LimbOverlap {
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
     LimbSet m_buried = 0;
     std::vector<LimbSet> m_home;     ///< |V|: 0: has not come near any limb yet
+    std::vector<LimbSet> m_strangers;  ///< |V|: limbs that are not joined to its home; 0: no home
     std::vector<LimbSet> m_ignored;  ///< |V|
     std::vector<LimbSet> m_keep;     ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;  ///< |V|: limbs that a query passes over
