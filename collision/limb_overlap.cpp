@@ -1,19 +1,11 @@
 #include "collision/limb_overlap.h"
 
 #include <algorithm>
-#include <string>
 
-#include "data/errors.h"
+#include "collision/check_range.h"
 
 namespace cloth {
 namespace {
-
-void check(const char* field, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-        throw ArgumentError(std::string("LimbOverlapSettings.") + field,
-                            std::to_string(value) + " is out of range",
-                            "use " + std::to_string(low) + " to " + std::to_string(high));
-}
 
 LimbSet only(size_t limb) {
     return LimbSet(1) << limb;
@@ -26,9 +18,9 @@ bool are_in_range(const std::vector<std::uint8_t>& limbs) {
 }  // namespace
 
 LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
-    check("reach", settings.reach, 0.01, 0.1);
-    check("margin", settings.margin, 1e-3, 0.05);
-    check("least_cover", settings.least_cover, 0.0, 0.2);
+    check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
+    check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
+    check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);
 }
 
 /// Returns whether any obstacle has limbs; forgets everything when they are not those of the last

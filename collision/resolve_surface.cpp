@@ -1,9 +1,8 @@
 #include "collision/resolve_surface.h"
 
 #include <limits>
-#include <string>
 
-#include "data/errors.h"
+#include "collision/check_range.h"
 
 namespace cloth {
 namespace {
@@ -12,19 +11,12 @@ constexpr int vertex_iterations = 3;    // of push_out_rows
 constexpr double slack = 1e-4;          // m: samples lifted to within this are not lifted again
 constexpr double hold_distance = 1e-2;  // m: vertices further outside need no holding
 
-void check(const char* field, double value, double low, double high) {
-    if (!(value >= low && value <= high))
-        throw ArgumentError(std::string("SurfaceResolveSettings.") + field,
-                            std::to_string(value) + " is out of range",
-                            "use " + std::to_string(low) + " to " + std::to_string(high));
-}
-
 const SurfaceResolveSettings& checked(const SurfaceResolveSettings& settings) {
-    check("allowed_depth", settings.allowed_depth, 0.0, 5e-3);
-    check("iterations", settings.iterations, 0, 100);
-    check("sweeps", settings.sweeps, 1, 1000);
-    check("most", settings.most, 1.0, 10.0);
-    check("growth", settings.growth, 0.01, 1.0);
+    check_range("SurfaceResolveSettings.allowed_depth", settings.allowed_depth, 0.0, 5e-3);
+    check_range("SurfaceResolveSettings.iterations", settings.iterations, 0, 100);
+    check_range("SurfaceResolveSettings.sweeps", settings.sweeps, 1, 1000);
+    check_range("SurfaceResolveSettings.most", settings.most, 1.0, 10.0);
+    check_range("SurfaceResolveSettings.growth", settings.growth, 0.01, 1.0);
     return settings;
 }
 
