@@ -229,7 +229,7 @@ ClosestFaceTree::Eight ClosestFaceTree::box_entries(const Node& node, const Eige
 }
 
 int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
-                               double* distance) const {
+                               double* distance, LimbSet ignored) const {
     if (m_nodes.empty()) return -1;
     const Eigen::Vector3f local = (q - m_origin).cast<float>();
     Eigen::Vector3f inverse;
@@ -255,7 +255,7 @@ int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double leng
         const Eight enter =
             box_entries(node, local, inverse, static_cast<float>(nearest) * 1.00001f);
         for (int slot = 0; slot < width; ++slot)
-            if (enter[slot] < infinity && node.limbs[slot] != 0)
+            if (enter[slot] < infinity && (node.limbs[slot] & ~ignored) != 0)
                 *end++ = {node.child[slot], enter[slot] * 0.99999f};
     }
     if (distance) *distance = nearest;

@@ -52,8 +52,9 @@ class ClosestFaceTree {
     /// First face that the ray from `q` along the unit vector `direction` meets within `length`,
     /// or -1. Where it meets an edge, either face or (rarely, by rounding) none may be reported.
     /// @param distance  if not null, where it is (m)
+    /// @param ignored   limbs whose faces the ray passes through
     int first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
-                  double* distance = nullptr) const;
+                  double* distance = nullptr, LimbSet ignored = 0) const;
 
     /// The set that holds a face's limb.
     LimbSet limb(int face) const {

@@ -60,12 +60,22 @@ void LimbOverlap::add_joints(const Obstacle& obstacle) {
             if ((meeting & only(limb)) != 0) m_joined[limb] |= meeting;
 }
 
+/// To a single limb, itself among them.
+LimbSet LimbOverlap::joined(LimbSet limb) const {
+    for (size_t k = 0; k < max_limbs; ++k)
+        if (limb == only(k)) return m_joined[k];
+    return 0;
+}
+
+LimbSet LimbOverlap::limb_at(const Boundary& boundary, int obstacle, int face) const {
+    if (obstacle < 0 || face < 0) return 0;
+    const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
+    return is_known(mesh) ? only((*mesh.limbs)[static_cast<size_t>(face)]) : 0;
+}
+
 LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
     const auto i = static_cast<size_t>(vertex);
-    if (!m_near.has(vertex) || m_near.face[i] < 0) return 0;
-    const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(m_near.obstacle[i])];
-    if (!is_known(obstacle)) return 0;
-    return only((*obstacle.limbs)[static_cast<size_t>(m_near.face[i])]);
+    return limb_at(boundary, m_near.obstacle[i], m_near.face[i]);
 }
 
 void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
@@ -82,7 +92,7 @@ void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
     for (size_t i = 0; i < count; ++i)
         if (m_home[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
     if (m_rows.empty()) return;
-    m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, &m_without);
+    m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, {&m_without});
     for (const int i : m_rows) {
         const auto vertex = static_cast<size_t>(i);
         m_home[vertex] = limb_of(boundary, i);
@@ -92,15 +102,17 @@ void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
 }
 
 /// Whether the vertex is outside of the limb in m_near, with room between limb and home.
-bool LimbOverlap::is_clear(int vertex, StepEnd end) {
+bool LimbOverlap::is_clear(int vertex, LimbSet limb, StepEnd end) {
     if (m_near.distance[vertex] > m_settings.reach) return true;
     if (m_near.distance[vertex] < m_settings.margin) return false;
-    if (m_proximity.cover(m_near, vertex, end) > 0.0) return false;
+    const bool folded = (m_strangers[static_cast<size_t>(vertex)] & limb) == 0;
+    const LimbSet own = folded ? limb : joined(limb);
+    if (m_proximity.cover(m_near, vertex, end, own).depth > 0.0) return false;
     if (!m_near_home.has(vertex)) return true;
     const bool start = end == StepEnd::start;
     const Vec3 home = (start ? m_near_home.point0 : m_near_home.point1).row(vertex);
-    const Vec3 limb = (start ? m_near.point0 : m_near.point1).row(vertex);
-    return (home - limb).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
+    const Vec3 point = (start ? m_near.point0 : m_near.point1).row(vertex);
+    return (home - point).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
 }
 
 /// Marks the limbs that are not clear of vertices which ignore them.
@@ -113,18 +125,17 @@ void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
                 m_without[i] = ~only(limb);
             }
         if (m_rows.empty()) continue;
-        m_proximity.query_rows(x, m_rows, boundary, m_near, end, &m_without);
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without});
         for (const int i : m_rows)
-            if (m_near.has(i) && !is_clear(i, end)) m_keep[static_cast<size_t>(i)] |= only(limb);
+            if (m_near.has(i) && !is_clear(i, only(limb), end))
+                m_keep[static_cast<size_t>(i)] |= only(limb);
     }
 }
 
+/// Lets vertices touch what they are clear of, at both ends; m_near_home is to be of the start.
 void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
-    m_rows.clear();
-    for (size_t i = 0; i < m_home.size(); ++i)
-        if (m_ignored[i] != 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = ~m_home[i];
-    if (m_rows.empty()) return;
-    m_proximity.query_rows(x0, m_rows, boundary, m_near_home, StepEnd::start, &m_without);
+    const auto none = [](LimbSet limbs) { return limbs == 0; };
+    if (std::all_of(m_ignored.begin(), m_ignored.end(), none)) return;
     m_keep.assign(m_home.size(), 0);
     keep(boundary, x0, StepEnd::start);
     keep(boundary, x1, StepEnd::end);
@@ -137,27 +148,21 @@ void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Poin
 }
 
 /// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
-void LimbOverlap::engage(const Boundary& boundary, const Points& x, StepEnd end) {
+void LimbOverlap::find_buried(const Boundary& boundary, const Points& x, StepEnd end) {
     m_rows.clear();
     for (size_t i = 0; i < m_home.size(); ++i) {
-        m_without[i] = m_home[i] | m_ignored[i];
+        m_without[i] = ~m_strangers[i] | m_ignored[i];
         if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
     }
     while (!m_rows.empty()) {
-        m_proximity.query_rows(x, m_rows, boundary, m_near, end, &m_without);
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
         m_next.clear();
         for (const int i : m_rows) {
-            const auto vertex = static_cast<size_t>(i);
-            const LimbSet limb = limb_of(boundary, i) & ~m_without[vertex];
-            if (limb == 0 || std::abs(m_near.distance[i]) > m_settings.reach) continue;
-            m_without[vertex] |= limb;
+            const LimbSet limb = limb_of(boundary, i) & ~m_without[static_cast<size_t>(i)];
+            if (limb == 0) continue;
+            m_without[static_cast<size_t>(i)] |= limb;
             m_next.push_back(i);
-            const double cover = m_proximity.cover(m_near, i, end);
-            if ((m_strangers[vertex] & limb) == 0) {
-                if (cover > m_settings.least_cover) m_ignored[vertex] |= limb;
-            } else if (cover > 0.0) {
-                m_buried |= limb;
-            }
+            if (m_proximity.cover(m_near, i, end, joined(limb)).depth > 0.0) m_buried |= limb;
         }
         m_rows.swap(m_next);
     }
@@ -168,6 +173,30 @@ void LimbOverlap::ignore_buried() {
     for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & m_strangers[i];
 }
 
+/// Lets vertices that are inside a joined limb ignore it where it lies over the skin at home, which
+/// m_near_home then holds.
+void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_without[i] = ~m_home[i];
+        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    }
+    m_proximity.query_rows(x, m_rows, boundary, m_near_home, end, {&m_without, m_settings.reach});
+    m_next.clear();
+    for (const int i : m_rows) {
+        const auto vertex = static_cast<size_t>(i);
+        const LimbSet not_joined = m_home[vertex] | m_strangers[vertex];
+        const Cover cover = m_proximity.cover(m_near_home, i, end, not_joined);
+        if (!(cover.depth > m_settings.least_cover)) continue;
+        m_without[vertex] = ~limb_at(boundary, m_near_home.obstacle[vertex], cover.face);
+        m_next.push_back(i);
+    }
+    m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});
+    for (const int i : m_next)
+        if (!m_near.has(i) || m_near.distance[i] <= 0.0)
+            m_ignored[static_cast<size_t>(i)] |= ~m_without[static_cast<size_t>(i)];
+}
+
 const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
     if (!learn_limbs(boundary)) {
         m_ignored.clear();
@@ -175,10 +204,12 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     }
     find_homes(boundary, state.x);
     m_x = state.x + dt * state.v;
-    release(boundary, state.x, m_x);
+    find_buried(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
     ignore_buried();
-    engage(boundary, state.x, StepEnd::start);
-    engage(boundary, m_x, StepEnd::end);
+    ignore_folded(boundary, state.x, StepEnd::start);
+    release(boundary, state.x, m_x);
+    ignore_folded(boundary, m_x, StepEnd::end);
+    find_buried(boundary, m_x, StepEnd::end);
     ignore_buried();
     const auto any = [](LimbSet limbs) { return limbs != 0; };
     if (std::none_of(m_ignored.begin(), m_ignored.end(), any)) return boundary;

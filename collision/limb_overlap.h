@@ -13,9 +13,8 @@ struct LimbOverlapSettings {
     double reach = 0.05;   ///< limbs farther from a vertex (m) are not looked at, 0.01 to 0.1
     double margin = 0.01;  ///< a limb that was ignored is touched again when it is clear of the
                            ///< vertex by this (m), 1e-3 to 0.05
-    double least_cover = 0.04;  ///< joined limbs are folded where this much of the one (m) lies
-                                ///< over the skin of the other, 0 to 0.2; less is a crease, whose
-                                ///< sides cloth keeps touching
+    double least_cover = 0.01;  ///< of a joined limb (m) over the skin of a vertex's home, for it
+                                ///< to be ignored, 0 to 0.2
 };
 
 /// Contact with a body whose limbs pass through each other, as those of motion that was captured
@@ -24,11 +23,11 @@ struct LimbOverlapSettings {
 /// along when they part. So there cloth keeps to the limb that it belongs to:
 ///
 /// - A vertex is at home on the limb that it first came near.
-/// - A limb is buried while its skin near the cloth lies inside another one, and until the cloth
-///   has come clear of it. Cloth that is not at home on it, nor on a limb that is joined to it,
-///   ignores it.
-/// - Where joined limbs fold into each other (armpit, groin), single vertices of the one ignore
-///   the other.
+/// - A limb is buried while its skin near the cloth lies inside another one that is not joined to
+///   it, and until the cloth has come clear of it. Cloth that is not at home on it, nor on a limb
+///   that is joined to it, ignores it.
+/// - Limbs that are joined always meet, as in an armpit. There a vertex that has come inside
+///   the other limb ignores it where it lies over the skin at home, until it is clear of it.
 ///
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
@@ -56,9 +55,12 @@ class LimbOverlap {
     void find_homes(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);
     void keep(const Boundary& boundary, const Points& x, StepEnd end);
-    bool is_clear(int vertex, StepEnd end);
-    void engage(const Boundary& boundary, const Points& x, StepEnd end);
+    bool is_clear(int vertex, LimbSet limb, StepEnd end);
+    void find_buried(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_buried();
+    void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
+    LimbSet joined(LimbSet limb) const;
+    LimbSet limb_at(const Boundary& boundary, int obstacle, int face) const;
     LimbSet limb_of(const Boundary& boundary, int vertex) const;
 
     LimbOverlapSettings m_settings;

@@ -80,14 +80,15 @@ Vec3 MeshSurface::normal(int face) const {
     return normal;
 }
 
-double MeshSurface::cover(const Vec3& point, int face, double length,
-                          ClosestFaceTree::Stack& stack) const {
+Cover MeshSurface::cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack,
+                         LimbSet ignored) const {
     constexpr double start = 1e-5;  // m: off the face itself
     const Vec3 up = normal(face);
-    if (up.isZero(0.0)) return 0.0;
+    if (up.isZero(0.0)) return {};
     double at = 0.0;
-    const int hit = m_tree.first_hit(point + start * up, up, length, stack, &at);
-    return hit >= 0 && normal(hit).dot(up) > 0.0 ? at : 0.0;
+    const int hit = m_tree.first_hit(point + start * up, up, length, stack, &at, ignored);
+    if (hit < 0 || !(normal(hit).dot(up) > 0.0)) return {};
+    return {at, hit};
 }
 
 static double signed_root(double squared, bool negative) {

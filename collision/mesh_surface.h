@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "collision/closest_face_tree.h"
+#include "collision/proximity.h"
 
 namespace cloth {
 
@@ -51,10 +52,11 @@ class MeshSurface {
     SurfaceHit closest(const Vec3& q, double radius, int hint, ClosestFaceTree::Stack& stack,
                        LimbSet ignored = 0) const;
 
-    /// How much (m, along the face's normal) of another part of the mesh lies over a point of a
-    /// face; 0: nothing, for what the ray along the normal meets first (within `length`) is seen
-    /// from outside.
-    double cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack) const;
+    /// The part of the mesh that lies over a point of a face, along its normal; nothing, if what
+    /// the ray along the normal meets first (within `length`) is seen from outside.
+    /// @param ignored  limbs that the ray passes through
+    Cover cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack,
+                LimbSet ignored = 0) const;
 
     const std::shared_ptr<const Faces>& faces() const { return m_faces; }
     Eigen::Index vertex_count() const { return m_tree.vertices().rows(); }

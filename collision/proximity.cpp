@@ -73,8 +73,9 @@ Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t p
         if (target.surface) {
             const SurfaceHit hit =
                 target.surface->closest(x, radius, target.hints[point], stack, ignored);
+            if (hit.face < 0) continue;
             target.hints[point] = hit.face;
-            if (hit.face < 0 || hit.distance >= nearest.distance) continue;
+            if (hit.distance >= nearest.distance) continue;
             nearest.on_mesh = hit;
             nearest.distance = hit.distance;
         } else {
@@ -216,7 +217,8 @@ struct Proximity::Impl {
     /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
     template <class Store>
     void for_each_nearest(const Points& x, const std::vector<int>* rows,
-                          const std::vector<LimbSet>& ignored, const Store& store) {
+                          const std::vector<LimbSet>& ignored, double radius, const Store& store) {
+        radius = std::min(radius, settings.radius);
         const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
         const int threads = count < min_parallel || targets.empty() ? 1 : thread_count();
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
@@ -224,8 +226,7 @@ struct Proximity::Impl {
             const int i = rows ? (*rows)[size_t(at)] : at;
             ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
             const LimbSet passed_over = ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
-            store(i,
-                  find_nearest(targets, x.row(i), size_t(i), settings.radius, passed_over, stack));
+            store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over, stack));
         }
     }
 };
@@ -254,28 +255,29 @@ void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, nullptr, boundary.ignored_limbs,
+        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
         [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 
 void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
                            SurfaceContacts& contacts, StepEnd chosen_at,
-                           const std::vector<LimbSet>* ignored) {
+                           const QueryLimits& limits) {
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, &rows, ignored ? *ignored : boundary.ignored_limbs,
+        x, &rows, limits.ignored ? *limits.ignored : boundary.ignored_limbs, limits.radius,
         [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 
-double Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at) {
+Cover Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                       LimbSet ignored) {
     constexpr double length = 0.5;  // m: thicker than any limb
-    if (!contacts.has(i)) return 0.0;
+    if (!contacts.has(i)) return {};
     const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
     for (const Target& target : m_impl->targets)
         if (target.index == contacts.obstacle[size_t(i)] && target.surface)
             return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
-                                         m_impl->stacks[0]);
-    return 0.0;
+                                         m_impl->stacks[0], ignored);
+    return {};
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,
@@ -283,7 +285,7 @@ void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepE
     distance.resize(x.rows());
     m_impl->prepare(boundary, end, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, nullptr, boundary.ignored_limbs,
+        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
         [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -46,6 +47,20 @@ struct ProximitySettings {
     int threads = 0;      ///< 0: as many as OpenMP gives; results do not depend on it
 };
 
+/// What a query of some rows leaves out.
+struct QueryLimits {
+    const std::vector<LimbSet>* ignored = nullptr;  ///< limbs that each row passes over; null:
+                                                    ///< Boundary::ignored_limbs, if it fits
+    double radius = std::numeric_limits<double>::infinity();  ///< look no farther than this (m),
+                                                              ///< nor than ProximitySettings
+};
+
+/// What lies over a surface point of a mesh, see Proximity::cover().
+struct Cover {
+    double depth = 0.0;  ///< how much of it (m, along the normal); 0: nothing
+    int face = -1;       ///< its face on the far side, -1: nothing
+};
+
 /// Nearest-point queries against the obstacles of a Boundary, on FCL's bounding volume hierarchies.
 ///
 ///     Proximity proximity;
@@ -77,19 +92,19 @@ class Proximity {
 
     /// Repeats a query for some rows of `x` only (ascending or not, each at most once); the other
     /// rows of `contacts`, which has |V| rows from a query before, are left as they are.
-    /// @param ignored  limbs that each row of x passes over; null: Boundary::ignored_limbs, if it
-    ///                 has as many rows
     void query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
                     SurfaceContacts& contacts, StepEnd chosen_at = StepEnd::start,
-                    const std::vector<LimbSet>* ignored = nullptr);
+                    const QueryLimits& limits = {});
 
     /// Signed distance (m) of `x` to the surfaces at one end of the step; +inf beyond the radius.
     /// Boundary::ignored_limbs is used if it has as many rows.
     void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
 
-    /// How much (m, along the normal) of another part of its own mesh lies over row i's surface
-    /// point; 0: nothing within half a metre. To be asked right after the query, for the same end.
-    double cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at);
+    /// The part of its own mesh that lies over row i's surface point, up to half a metre. To be
+    /// asked right after the query, for the same end.
+    /// @param ignored  limbs that do not count
+    Cover cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                LimbSet ignored = 0);
 
     /// Mesh hierarchies that are kept at present.
     int cached_meshes() const;

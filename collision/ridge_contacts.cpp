@@ -77,7 +77,7 @@ void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Poi
         for (size_t c = 0; c < 3; ++c)
             if (sample.weight[c] > 0.0) ignored |= ignored_limbs(boundary, vertex(sample, c));
     }
-    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at, &m_ignored);
+    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at, {&m_ignored});
     for (const int row : m_rows) {
         if (!m_near.has(row) || !(m_near.distance[row] < reach)) continue;
         const RidgeContact found = ridge(row, chosen_at);

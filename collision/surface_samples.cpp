@@ -110,7 +110,7 @@ void SurfaceSamples::search(Proximity& proximity, const Boundary& boundary) {
         LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
         for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
     }
-    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, &m_ignored);
+    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, {&m_ignored});
     for (const int sample : m_rows)
         m_distance[sample] = std::min(m_contacts.distance[sample], m_radius);
 }

@@ -14,8 +14,8 @@ struct AnimationSettings {
     double start_ramp = 8.0 / 30.0;  ///< the motion then takes up speed over this time instead of
                                      ///< with a jolt (s), 0 to 1; it ends start_ramp / 2 later
     double friction = 0.5;           ///< of the skin against cloth (Coulomb), 0 to 1.5
-    bool limbs = false;  ///< obstacles have the body's limbs: cloth passes through those that pass
-                         ///< through others
+    bool limbs = true;  ///< obstacles have the body's limbs: cloth passes through those that pass
+                        ///< through others
     RetargetSettings retarget;
 };
 

@@ -54,7 +54,7 @@ int main(int argc, char** argv) try {
     const int lead_in = static_cast<int>(person.settings().lead_in / dt + 0.5);
     for (int frame = 0; frame < lead_in + frames; ++frame) {
         solver.setAnimatedObstacle(&skin, person.faces(), person.vertices(frame * dt),
-                                   person.vertices((frame + 1) * dt), dt);
+                                   person.vertices((frame + 1) * dt), dt, person.limbs());
         world.stepSimulation(static_cast<btScalar>(dt), 0);
         ms += solver.status().times.total();
         deepest = std::max(deepest, solver.status().maxPenetration);

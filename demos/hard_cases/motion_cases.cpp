@@ -13,7 +13,7 @@ namespace cloth {
 namespace {
 
 std::shared_ptr<const BodyScene> whole_motion(const std::string& motion, const std::string& garment,
-                                              bool limbs = false) {
+                                              bool limbs = true) {
     BodySceneSettings settings;
     settings.limbs = limbs;
     settings.motion = motion;
@@ -47,7 +47,7 @@ HardCase motion_case(const std::string& motion, const std::string& garment, bool
     const std::shared_ptr<const BodyScene> scene = whole_motion(motion, garment, limbs);
     HardCase hard;
     hard.name = "motion-" + std::filesystem::path(motion).stem().string();
-    if (limbs) hard.name += "-limbs";
+    if (!limbs) hard.name += "-no-limbs";
     hard.sentence = garment + " on a body in the motion " + motion;
     hard.frames = scene->lead_in_frames() + scene->frames();
     hard.bounds.reason = "1.1 times the reference";

@@ -16,9 +16,11 @@ std::string hard_cases_usage() {
            "                       BVH files or folders of them. Stretch may be 1.1 times that of\n"
            "                       the reference, if it is named first in --steppers\n"
            "  --garment NAME       for --motions: tshirt_1000 (default), tshirt_2000, tshirt\n"
-           "  --limbs              for --motions: cloth passes through limbs that are inside "
-           "other\n"
-           "                       limbs; depth is then that inside all others\n"
+           "  --no-limbs           for --motions: the body is one surface, and cloth does not "
+           "pass\n"
+           "                       through limbs that are inside other limbs (with limbs, depth "
+           "is\n"
+           "                       that inside the others)\n"
            "  --steppers A,B,...   reference, newton-K, quasi-newton-K, quasi-newton-KxS, xpbd-N,\n"
            "                       bullet, bullet-fine, bullet-KxS, or a network NAME[+K]\n"
            "  --frames-scale S     runs S times the frames of each case (default 1); the bounds "
@@ -61,11 +63,10 @@ static double positive_number(const std::string& option, const std::string& text
 HardCaseOptions parse_hard_case_options(const std::vector<std::string>& arguments) {
     HardCaseOptions options;
     options.steppers = default_hard_case_steppers();
-    bool no_pictures = false;
+    bool no_pictures = false, no_limbs = false;
     const std::map<std::string, bool*> flags = {
-        {"--soak", &options.soak},         {"--list", &options.list},
-        {"--markdown", &options.markdown}, {"--resume", &options.resume},
-        {"--limbs", &options.limbs},       {"--no-pictures", &no_pictures}};
+        {"--soak", &options.soak},     {"--list", &options.list}, {"--markdown", &options.markdown},
+        {"--resume", &options.resume}, {"--no-limbs", &no_limbs}, {"--no-pictures", &no_pictures}};
     for (size_t i = 0; i < arguments.size(); ++i) {
         const std::string& option = arguments[i];
         if (option == "--help" || option == "-h") throw UsageError(hard_cases_usage());
@@ -96,6 +97,7 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
             throw UsageError("unknown option " + option + "; see --help");
     }
     options.pictures = !no_pictures;
+    options.limbs = !no_limbs;
     if (options.cases.empty() && options.motions.empty())
         for (const HardCase& hard : hard_cases()) options.cases.push_back(hard.name);
     for (const std::string& name : options.cases) hard_case(name);

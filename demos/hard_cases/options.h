@@ -9,7 +9,7 @@ struct HardCaseOptions {
     std::vector<std::string> cases;     ///< empty: all, or none if there are motions
     std::vector<std::string> motions;   ///< names, BVH files or folders of them: a case each
     std::string garment = "tshirt_1000";  ///< of these cases
-    bool limbs = false;  ///< in these cases cloth passes through limbs that pass through others
+    bool limbs = true;  ///< in these cases cloth passes through limbs that pass through others
     std::vector<std::string> steppers;  ///< see default_hard_case_steppers()
     double frames_scale = 1.0;          ///< of each case's frames, 0.001 to 1000
     bool soak = false;                  ///< the soak cases run for 10,000 frames

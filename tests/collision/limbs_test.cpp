@@ -71,7 +71,7 @@ TEST(Limbs, QueriesPassOverThoseThatAreIgnored) {
         SurfaceContacts all, contacts;
         proximity.query(x, boundary, all);
         contacts = all;
-        proximity.query_rows(x, rows, boundary, contacts, StepEnd::start, &ignored);
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::start, {&ignored});
         for (int i = 0; i < x.rows(); ++i) {
             const LimbSet passed_over = ignored[static_cast<size_t>(i)];
             const TriMesh rest = without(mesh, *obstacle.limbs, passed_over);
@@ -133,7 +133,7 @@ TEST(Limbs, CoverIsWhatLiesOverAPoint) {
     proximity.query(x, boundary_of({mesh_obstacle(both)}), contacts);
     int covered = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const double cover = proximity.cover(contacts, i, StepEnd::start);
+        const double cover = proximity.cover(contacts, i, StepEnd::start).depth;
         const Vec3 from = x.row(i) / 1.001, up = from / radius;
         const double away = (from - centre).norm();
         if (away > 0.205) {

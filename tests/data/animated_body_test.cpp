@@ -186,13 +186,12 @@ TEST(AnimatedBody, ObstaclesAreThePosesAtBothEnds) {
     EXPECT_LT((body.vertices(1e9) - body.vertices(body.duration())).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(AnimatedBody, ObstaclesHaveLimbsIfAskedFor) {
-    EXPECT_EQ(jumper().obstacle(0.0, 0.1).limbs, nullptr);
+TEST(AnimatedBody, ObstaclesHaveLimbsUnlessForbidden) {
+    EXPECT_EQ(jumper().obstacle(0.0, 0.1).limbs, default_body()->limbs());
+    EXPECT_EQ(jumper().obstacle(1.0, 1.1).limbs, default_body()->limbs());
     AnimationSettings settings;
-    settings.limbs = true;
-    const AnimatedBody body(default_body(), jumps(), settings);
-    EXPECT_EQ(body.obstacle(0.0, 0.1).limbs, default_body()->limbs());
-    EXPECT_EQ(body.obstacle(1.0, 1.1).limbs, default_body()->limbs());
+    settings.limbs = false;
+    EXPECT_EQ(AnimatedBody(default_body(), jumps(), settings).obstacle(0.0, 0.1).limbs, nullptr);
 }
 
 TEST(AnimatedBody, WearsOtherFigures) {

@@ -51,8 +51,8 @@ TEST(HardCaseOptions, MotionsTakeThePlaceOfTheCases) {
     EXPECT_EQ(options.motions, (std::vector<std::string>{"01_01", "01_03"}));
     EXPECT_EQ(options.garment, "tshirt");
     EXPECT_TRUE(options.cases.empty());
-    EXPECT_FALSE(options.limbs);
-    EXPECT_TRUE(parse_hard_case_options({"--motions", "01_01", "--limbs"}).limbs);
+    EXPECT_TRUE(options.limbs);
+    EXPECT_FALSE(parse_hard_case_options({"--motions", "01_01", "--no-limbs"}).limbs);
 }
 
 TEST(HardCaseOptions, FoldersOfMotionsAreListed) {
