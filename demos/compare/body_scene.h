@@ -15,7 +15,9 @@ struct BodySceneSettings {
     std::string motion = "01_01";
     int frames = 90;            ///< of the motion; 0: all
     int reference_frames = 30;  ///< frames with references; 0: all
-    bool limbs = true;          ///< cloth passes through limbs that pass through others
+    /// Cloth passes through limbs that pass through others. Not where steps are judged by their
+    /// energy: that needs the same surface for all solvers.
+    bool limbs = false;
 };
 
 /// A garment on a moving body. The clock starts with the motion; in the lead-in the body moves from

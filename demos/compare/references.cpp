@@ -1,9 +1,5 @@
 #include "demos/compare/references.h"
 
-#include <memory>
-#include <utility>
-
-#include "demos/compare/solver_factory.h"
 #include "gnn/physics/implicit_stepper.h"
 #include "gnn/physics/quasi_newton_stepper.h"
 
@@ -16,18 +12,13 @@ static QuasiNewtonSettings many_iterations(int iterations, double tolerance) {
     return settings;
 }
 
-static std::unique_ptr<Stepper> quasi_newton(const ComparisonScene& scene,
-                                             const QuasiNewtonSettings& settings) {
-    return knowing_limbs(scene, std::make_unique<QuasiNewtonStepper>(scene.garment(), settings));
-}
-
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress) {
-    const std::unique_ptr<Stepper> stepper = quasi_newton(scene, many_iterations(60, 1e-3));
+    QuasiNewtonStepper stepper(scene.garment(), many_iterations(60, 1e-3));
     ClothState state = ClothState::at_rest(scene.garment());
     const double dt = ComparisonScene::frame_time;
     const int steps = scene.lead_in_frames();
     for (int k = 0; k < steps; ++k) {
-        stepper->step(scene.boundary((k - steps) * dt, (k + 1 - steps) * dt), dt, state);
+        stepper.step(scene.boundary((k - steps) * dt, (k + 1 - steps) * dt), dt, state);
         progress(k + 1, steps, "the garment settles");
     }
     state.time = 0.0;
@@ -51,16 +42,15 @@ static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int sub
 
 Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                             const ProgressFunction& progress) {
-    const std::unique_ptr<Stepper> stepper =
-        knowing_limbs(scene, std::make_unique<ImplicitStepper>(scene.garment()));
-    return extend(scene, *stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
+    ImplicitStepper stepper(scene.garment());
+    return extend(scene, stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
 }
 
 Trajectory fine_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                           const ProgressFunction& progress) {
     // At 1/240 s inertia rules the potential and the quasi-Newton matrix is nearly its Hessian.
-    const std::unique_ptr<Stepper> stepper = quasi_newton(scene, many_iterations(100, 1e-4));
-    return extend(scene, *stepper, 8, std::move(begun), frames, "reference, 1/240 s", progress);
+    QuasiNewtonStepper stepper(scene.garment(), many_iterations(100, 1e-4));
+    return extend(scene, stepper, 8, std::move(begun), frames, "reference, 1/240 s", progress);
 }
 
 }  // namespace cloth

@@ -182,11 +182,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
                                                     scene.segments());
-    return knowing_limbs(scene, make_own_solver(name, scene, settings));
-}
-
-std::unique_ptr<Stepper> knowing_limbs(const ComparisonScene& scene,
-                                       std::unique_ptr<Stepper> stepper) {
+    std::unique_ptr<Stepper> stepper = make_own_solver(name, scene, settings);
     if (!scene.has_limbs() || dynamic_cast<GuardedStepper*>(stepper.get())) return stepper;
     GuardSettings limbs_alone;
     limbs_alone.max_substeps = 1;

@@ -43,11 +43,6 @@ struct SolverSettings {
 /// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
 ///
 /// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
-/// The stepper, within a guard that only keeps cloth to its limbs if the scene has limbs and the
-/// stepper is not guarded itself.
-std::unique_ptr<Stepper> knowing_limbs(const ComparisonScene& scene,
-                                       std::unique_ptr<Stepper> stepper);
-
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);
 
