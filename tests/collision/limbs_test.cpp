@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "collision/brute_force.h"
 #include "collision/proximity.h"
@@ -95,6 +96,33 @@ TEST(Limbs, QueriesPassOverThoseThatAreIgnored) {
     EXPECT_GT(at_border, 10);
 }
 
+TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
+    std::mt19937 random(11);
+    const Boundary boundary = boundary_of({mesh_obstacle(torus(40, 20, 0.8, 0.3)),
+                                           primitive(ObstacleShape::sphere, Vec3::Zero(), 0.1)});
+    const Points x = random_points(random, 2000, 1.3);
+    std::vector<int> rows(2000);
+    std::iota(rows.begin(), rows.end(), 0);
+    Proximity proximity({0.2, 0});
+    SurfaceContacts all, near;
+    proximity.query(x, boundary, all);
+    near = all;
+    proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 0.05});
+    int kept = 0, left_out = 0;
+    for (const int i : rows) {
+        const bool is_sphere = all.has(i) && all.obstacle[size_t(i)] == 1;
+        const double distance = is_sphere ? all.distance[i] : std::abs(all.distance[i]);
+        ASSERT_EQ(near.has(i), distance <= 0.05) << i;
+        ++(near.has(i) ? kept : left_out);
+        if (near.has(i)) {
+            EXPECT_EQ(near.distance[i], all.distance[i]);
+        }
+    }
+    EXPECT_GT(std::min(kept, left_out), 50);
+    proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 1.0});
+    EXPECT_EQ(near.distance, all.distance) << "not beyond the settings' radius";
+}
+
 TEST(Limbs, TheBoundarySaysWhatVerticesIgnore) {
     const TriMesh mesh = icosphere(2);
     Boundary boundary = boundary_of({sliced(mesh, 2)});
@@ -128,12 +156,17 @@ TEST(Limbs, CoverIsWhatLiesOverAPoint) {
     Points x(500, 3);
     for (Eigen::Index i = 0; i < x.rows(); ++i)
         x.row(i) = 1.001 * radius * random_point(random, 1.0).normalized().transpose();
+    Obstacle obstacle = mesh_obstacle(both);
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(both.faces.rows()), 1);
+    std::fill_n(limbs->begin(), ball.faces.rows(), 0);
+    obstacle.limbs = limbs;
     Proximity proximity;
     SurfaceContacts contacts;
-    proximity.query(x, boundary_of({mesh_obstacle(both)}), contacts);
+    proximity.query(x, boundary_of({obstacle}), contacts);
     int covered = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const double cover = proximity.cover(contacts, i, StepEnd::start).depth;
+        const auto [cover, by] = proximity.cover(contacts, i, StepEnd::start);
+        EXPECT_EQ(cover > 0.0, by >= 0);
         const Vec3 from = x.row(i) / 1.001, up = from / radius;
         const double away = (from - centre).norm();
         if (away > 0.205) {
@@ -141,6 +174,8 @@ TEST(Limbs, CoverIsWhatLiesOverAPoint) {
         }
         if (away > 0.195 || contacts.face[size_t(i)] >= ball.faces.rows()) continue;
         ++covered;
+        EXPECT_GE(by, ball.faces.rows()) << "the other ball";
+        EXPECT_EQ(proximity.cover(contacts, i, StepEnd::start, /*ignored=*/2).face, -1);
         const double along = (centre - from).dot(up);
         const double exit = along + std::sqrt(along * along + radius * radius - away * away);
         EXPECT_NEAR(cover, exit, 0.01) << "point " << i;
