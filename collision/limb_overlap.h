@@ -68,11 +68,11 @@ class LimbOverlap {
     std::vector<Limbs> m_known, m_found;           ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
     LimbSet m_buried = 0;
-    std::vector<LimbSet> m_home;     ///< |V|: 0: has not come near any limb yet
+    std::vector<LimbSet> m_home;       ///< |V|: 0: has not come near any limb yet
     std::vector<LimbSet> m_strangers;  ///< |V|: limbs that are not joined to its home; 0: no home
-    std::vector<LimbSet> m_ignored;  ///< |V|
-    std::vector<LimbSet> m_keep;     ///< |V|: limbs that are not clear of the vertex
-    std::vector<LimbSet> m_without;  ///< |V|: limbs that a query passes over
+    std::vector<LimbSet> m_ignored;    ///< |V|
+    std::vector<LimbSet> m_keep;       ///< |V|: limbs that are not clear of the vertex
+    std::vector<LimbSet> m_without;    ///< |V|: limbs that a query passes over
     SurfaceContacts m_near, m_near_home;
     std::vector<int> m_rows, m_next;
     Points m_x;           ///< |V| x 3 (m): where the vertices are heading

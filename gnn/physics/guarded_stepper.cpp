@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
+#include "collision/check_range.h"
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 #include "gnn/physics/quasi_newton_stepper.h"
@@ -54,22 +54,10 @@ double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift
 }
 
 void check(const GuardSettings& settings) {
-    if (!(settings.max_motion >= 0.01 && settings.max_motion <= 1.0))
-        throw ArgumentError("GuardSettings::max_motion",
-                            std::to_string(settings.max_motion) + " m is outside 0.01 to 1",
-                            "use 0.1, the radius of the proximity query");
-    if (!(settings.max_entry >= 1e-3 && settings.max_entry <= 0.1))
-        throw ArgumentError("GuardSettings::max_entry",
-                            std::to_string(settings.max_entry) + " m is outside 0.001 to 0.1",
-                            "use 0.01");
-    if (!(settings.fine_motion >= 0.01 && settings.fine_motion <= 1.0))
-        throw ArgumentError("GuardSettings::fine_motion",
-                            std::to_string(settings.fine_motion) + " m is outside 0.01 to 1",
-                            "use 0.04");
-    if (settings.max_substeps < 1 || settings.max_substeps > 64)
-        throw ArgumentError("GuardSettings::max_substeps",
-                            std::to_string(settings.max_substeps) + " is outside 1 to 64",
-                            "use 16");
+    check_range("GuardSettings.max_motion", settings.max_motion, 0.01, 1.0);
+    check_range("GuardSettings.max_entry", settings.max_entry, 1e-3, 0.1);
+    check_range("GuardSettings.fine_motion", settings.fine_motion, 0.01, 1.0);
+    check_range("GuardSettings.max_substeps", settings.max_substeps, 1, 64);
 }
 
 }  // namespace
