@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "data/boundary.h"
@@ -21,6 +22,10 @@ struct StepReport {
     int iterations = 0;            ///< solver or refinement iterations spent
     double residual = 0.0;         ///< |gradient| of the incremental potential after the step, over
                                    ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
+    double gain =
+        std::numeric_limits<double>::infinity();  ///< what the last five quasi-Newton
+                                                  ///< iterations gained, as a distance (m), see
+                                                  ///< MinimiseReport; +inf: there were fewer
     bool converged = false;        ///< the stepper's own tolerance was met
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre

@@ -35,6 +35,10 @@ QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
     if (refine.least < 0 || refine.least > 1000)
         throw ArgumentError("refine.least", std::to_string(refine.least) + " is outside 0 to 1000",
                             "use 10, or 0 to stop as soon as the tolerance is met");
+    if (!(refine.least_gain >= 0.0 && refine.least_gain <= 1.0))
+        throw ArgumentError("refine.least_gain",
+                            std::to_string(refine.least_gain) + " is outside 0 to 1 m",
+                            "use 0 for a fixed number of iterations, or metres such as 0.003");
     if (!(refine.tolerance >= 0.0) || refine.tolerance > 1e6)
         throw ArgumentError("refine.tolerance",
                             std::to_string(refine.tolerance) + " is outside 0 to 1e6",
@@ -43,6 +47,7 @@ QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
     solver.iterations = settings.refine.iterations;
     solver.least_iterations = settings.refine.least;
     solver.tolerance = settings.refine.tolerance;
+    solver.least_gain = settings.refine.least_gain;
     solver.potential = settings.potential;
     return solver;
 }
@@ -67,7 +72,7 @@ LearnedStepper::LearnedStepper(const Garment& garment, std::shared_ptr<Predictor
 
 std::string LearnedStepper::name() const {
     const Refinement& refine = m_settings.refine;
-    if (refine.tolerance > 0.0 && refine.least > 0) return m_predictor->config().variant;
+    if (refine.least_gain > 0.0) return m_predictor->config().variant;
     char text[32];
     if (refine.tolerance > 0.0)
         std::snprintf(text, sizeof text, "+%.0e", refine.tolerance);
@@ -127,6 +132,7 @@ void LearnedStepper::refine(StepReport& report) {
     const MinimiseReport minimum = m_solver.minimise(m_potential, m_x);
     report.iterations = minimum.iterations;
     report.residual = minimum.residual;
+    report.gain = minimum.gain;
     report.converged = minimum.converged;
 }
 

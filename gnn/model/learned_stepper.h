@@ -22,11 +22,12 @@ struct Refinement {
     int iterations = 100;  ///< at most, 0 to 1000; 0: off, the network's answer is taken as it is.
                            ///< Off blows up in long motions; 2 lose a T-shirt in a jump
     int least = 10;        ///< but not fewer than these
-    double tolerance = 3.0;  ///< of StepReport::residual; 0: all iterations run
+    double least_gain = 3e-3;  ///< stop when StepReport::gain is below this (m), 0 to 1; 0: never
+    double tolerance = 0.0;    ///< or StepReport::residual is at this, 0 to 1e6
 
-    /// Ten iterations, and up to a hundred in frames whose residual stays above 3.
+    /// Ten iterations, and up to a hundred for as long as five of them gain 3 mm.
     Refinement() = default;
-    Refinement(int count) : iterations(count), least(count), tolerance(0.0) {}
+    Refinement(int count) : iterations(count), least(count), least_gain(0.0) {}
     static Refinement off() { return Refinement(0); }
     static Refinement until(double tolerance, int at_most) {
         Refinement refinement(at_most);

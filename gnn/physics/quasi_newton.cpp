@@ -1,9 +1,11 @@
 #include "gnn/physics/quasi_newton.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "data/errors.h"
 
@@ -24,6 +26,26 @@ void check_range(const char* name, double value, double lowest, double highest) 
                         "choose from " + std::to_string(lowest) + " to " + std::to_string(highest));
 }
 
+/// The energies of the last iterations, and what became of them as a distance.
+class Gain {
+ public:
+    Gain(double dt, double mass) : m_scale(dt * std::sqrt(2.0 / mass)) {}
+
+    /// @return  see MinimiseReport::gain (m)
+    double after(double energy) {
+        double& oldest = m_energies[static_cast<size_t>(m_count++) % m_energies.size()];
+        const double before = std::exchange(oldest, energy);
+        if (m_count <= span) return std::numeric_limits<double>::infinity();
+        return m_scale * std::sqrt(std::max(0.0, before - energy));
+    }
+
+ private:
+    static constexpr int span = 5;  // iterations
+    double m_scale;
+    int m_count = 0;
+    std::array<double, span> m_energies = {};
+};
+
 // Minimum of the parabola through E(0), its slope and E(step), kept within a tenth and a half.
 double shorter_step(double step, double energy, double slope, double trial_energy) {
     const double parabola = -0.5 * slope * step * step / (trial_energy - energy - slope * step);
@@ -36,6 +58,7 @@ QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     : m_settings(settings), m_matrix(garment) {
     check_range("iterations", settings.iterations, 0, 10000);
     check_range("tolerance", settings.tolerance, 0.0, 1e6);
+    check_range("least_gain", settings.least_gain, 0.0, 1.0);
     check_range("least_iterations", settings.least_iterations, 0, 10000);
     check_range("history", settings.history, 0, 50);
     check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
@@ -59,10 +82,18 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
-    const auto met = [&] { return report.residual <= m_settings.tolerance; };
+    const auto met = [&] {
+        return report.residual <= m_settings.tolerance || report.gain < m_settings.least_gain;
+    };
+    Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
+    gain.after(report.energy);
     while (report.iterations < m_settings.iterations) {
         if (met() && report.iterations >= m_settings.least_iterations) break;
-        if (!iterate(potential, x, report)) break;
+        if (!iterate(potential, x, report)) {
+            report.gain = 0.0;
+            break;
+        }
+        report.gain = gain.after(report.energy);
     }
     report.converged = met();
     return report;

@@ -48,7 +48,8 @@ QuasiNewtonStepper::QuasiNewtonStepper(const Garment& garment, const QuasiNewton
 std::string QuasiNewtonStepper::name() const {
     const QuasiNewtonSettings& settings = m_solver.settings();
     std::string name = "quasi-newton";
-    if (settings.tolerance == 0.0) name += "-" + std::to_string(settings.iterations);
+    if (settings.tolerance == 0.0 && settings.least_gain == 0.0)
+        name += "-" + std::to_string(settings.iterations);
     if (settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
     return name;
 }
@@ -69,6 +70,7 @@ StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothSt
     if (!minimum.finite) return failed();
     report.iterations = minimum.iterations;
     report.residual = minimum.residual;
+    report.gain = minimum.gain;
     report.converged = minimum.converged;
     report.times.solve = watch.lap();
 

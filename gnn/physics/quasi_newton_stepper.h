@@ -24,8 +24,8 @@ class QuasiNewtonStepper : public Stepper {
     QuasiNewtonStepper(const Garment& garment, const QuasiNewtonSettings& settings,
                        const ProximitySettings& proximity = {});
 
-    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as a tolerance
-    /// needs; with "-bdf2" at the end if that integrates.
+    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes; with
+    /// "-bdf2" at the end if that integrates.
     std::string name() const override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     const LayerSafety& layers() const { return m_layers; }  ///< of the last step

@@ -48,6 +48,7 @@ void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
 void add(const StepReport& part, StepReport& report) {
     report.iterations += part.iterations;
     report.residual = part.residual;
+    report.gain = part.gain;
     report.converged = part.converged && report.converged;
     report.max_penetration = part.max_penetration;
     report.max_entry = std::max(report.max_entry, part.max_entry);

@@ -16,10 +16,7 @@ namespace {
 
 using Pair = std::pair<std::string, std::string>;  ///< case, stepper
 
-const std::map<Pair, std::string> known_failures = {
-    {{"mixed-triangles", "fast"},
-     "the network tears at triangles of 1 mm, iterations mend the rest"},
-};
+const std::map<Pair, std::string> known_failures = {};  ///< and why
 
 /// How many of a case's frames are run: networks are slow, and the large dress is for all.
 int frames_of(const HardCase& hard, const std::string& stepper) {

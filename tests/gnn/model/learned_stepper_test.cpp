@@ -127,6 +127,22 @@ TEST_F(LearnedStep, RefinesUntilTheToleranceIsMetAndSaysSo) {
     EXPECT_EQ(third.iterations, 2);
 }
 
+TEST_F(LearnedStep, ByDefaultRefinesForAsLongAsThatGains) {
+    Refinement patient;
+    patient.least_gain = 1e-5;
+    LearnedStepper loose = stepper(Vec3(0, -0.3, 0), Refinement());
+    LearnedStepper tight = stepper(Vec3(0, -0.3, 0), patient);
+    ClothState a = m_state, b = m_state;
+    const StepReport first = loose.step(m_boundary, m_dt, a);
+    const StepReport second = tight.step(m_boundary, m_dt, b);
+    EXPECT_TRUE(first.converged);
+    EXPECT_LT(first.gain, Refinement().least_gain);
+    EXPECT_GE(first.iterations, Refinement().least);
+    EXPECT_TRUE(second.converged);
+    EXPECT_LT(second.gain, patient.least_gain);
+    EXPECT_GT(second.iterations, first.iterations);
+}
+
 TEST_F(LearnedStep, LeavesTheStateUntouchedIfTheStepIsImpossible) {
     LearnedStepper learned = stepper(Vec3::Zero(), 2);
     const ClothState before = m_state;
@@ -152,7 +168,11 @@ TEST_F(LearnedStep, IsNamedAfterVariantAndIterations) {
     EXPECT_DOUBLE_EQ(stepper(Vec3::Zero(), 0).fixed_dt(), 1.0 / 30.0);
     EXPECT_EQ(stepper(Vec3::Zero(), Refinement::until(0.01, 30)).name(), "fast+1e-02");
     EXPECT_THROW(stepper(Vec3::Zero(), -1), ArgumentError);
+    EXPECT_EQ(stepper(Vec3::Zero(), Refinement()).name(), "fast");
     EXPECT_THROW(stepper(Vec3::Zero(), Refinement::until(-1.0, 5)), ArgumentError);
+    Refinement backwards;
+    backwards.least_gain = -1e-3;
+    EXPECT_THROW(stepper(Vec3::Zero(), backwards), ArgumentError);
 }
 
 }  // namespace
