@@ -30,11 +30,11 @@ std::string speed_error_usage() {
            "  --vertices N         of the sheets, 100 to 20000 (default 4000)\n"
            "  --solvers A,B,...    bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
            "                       sub-steps), quasi-newton-K, newton-K (K iterations),\n"
-           "                       reference, and networks: NAME+K (K refinement iterations),\n"
-           "                       NAME (as shipped), torch-NAME+K (by LibTorch instead of the\n"
-           "                       engine), bf16-NAME+K (products in bfloat16); -bdf2 at the\n"
-           "                       end: by BDF2. Default: every family at several settings,\n"
-           "                       with all networks of the weights folder\n"
+           "                       quasi-newton, NAME (a network; both as shipped), reference,\n"
+           "                       NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
+           "                       instead of the engine), bf16-NAME+K (products in bfloat16);\n"
+           "                       -bdf2 at the end: by BDF2. Default: every family at\n"
+           "                       several settings, with all networks of the weights folder\n"
            "  --relative-to NAME   solver whose time the others' is divided by, frame by frame\n"
            "                       (default quasi-newton-3)\n"
            "  --weights DIR        folder with NAME.safetensors (default: the committed ones)\n"
@@ -102,14 +102,12 @@ std::vector<std::string> default_solvers(const std::vector<std::string>& network
             solvers.push_back(std::string("bullet-") + iterations + "x" + substeps);
     for (const char* substeps : {"10", "20", "40", "100"})
         solvers.push_back(std::string("xpbd-") + substeps);
-    for (const char* iterations : {"1", "3", "10", "30"})
-        solvers.push_back(std::string("quasi-newton-") + iterations);
-    for (const char* iterations : {"3", "10"})
-        solvers.push_back(std::string("quasi-newton-") + iterations + "-bdf2");
+    for (const char* setting : {"-1", "-3", "-10", "", "-30", "-3-bdf2", "-10-bdf2", "-bdf2"})
+        solvers.push_back(std::string("quasi-newton") + setting);
     for (const char* solver : {"newton-1", "newton-3", "newton-10", "reference"})
         solvers.push_back(solver);
     for (const std::string& network : networks) {
-        for (const char* refine : {"+0", "+1", "+3", "+10", "+10-bdf2"})
+        for (const char* refine : {"+0", "+1", "+3", "+10", "", "+10-bdf2"})
             solvers.push_back(network + refine);
         if (torch) solvers.push_back("torch-" + network + "+0");
     }
