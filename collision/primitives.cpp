@@ -5,12 +5,14 @@
 
 namespace cloth {
 
+constexpr double coincident = 1e-12;  // m: nearer than this two points have no direction
+
 /// The offset by `radius` of the single point `core`.
 static PrimitiveHit offset_of_point(const Vec3& core, const Vec3& fallback, double radius,
                                     const Vec3& q) {
     const Vec3 away = q - core;
     const double length = away.norm();
-    const Vec3 normal = length > 1e-12 ? Vec3(away / length) : fallback;
+    const Vec3 normal = length > coincident ? Vec3(away / length) : fallback;
     return {core + radius * normal, normal, length - radius};
 }
 
@@ -23,8 +25,9 @@ static PrimitiveHit closest_on_capsule(const Obstacle& capsule, const Vec3& q) {
 static PrimitiveHit closest_on_box(const Obstacle& box, const Vec3& q) {
     const Vec3& half = box.half_extents;
     const Vec3 clamped = q.cwiseMax(-half).cwiseMin(half);
-    if (clamped != q) return offset_of_point(clamped, Vec3::UnitY(), box.radius, q);
-    Eigen::Index axis = 0;  // inside the box: the nearest side
+    if ((q - clamped).norm() > coincident)
+        return offset_of_point(clamped, Vec3::UnitY(), box.radius, q);
+    Eigen::Index axis = 0;  // inside the box, or on it: the nearest side
     const double depth = (half - q.cwiseAbs()).minCoeff(&axis);
     Vec3 normal = Vec3::Zero();
     normal[axis] = q[axis] < 0 ? -1.0 : 1.0;

@@ -75,6 +75,20 @@ TEST(Primitives, AmbiguousPointsHaveAUnitNormal) {
     }
 }
 
+TEST(Primitives, JustOutsideABoxTheNormalIsThatOfTheSide) {
+    const Obstacle box = primitive(ObstacleShape::box, {0.3, 0.5, 0.7}, 0.0);
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-1.0, 1.0})
+            for (const double gap : {-1e-15, 0.0, 1e-15, 1e-9}) {
+                Vec3 q(0.1, 0.1, 0.1), normal = Vec3::Zero();
+                q[axis] = side * (box.half_extents[axis] + gap);
+                normal[axis] = side;
+                const PrimitiveHit hit = closest_on_primitive(box, q);
+                EXPECT_TRUE(hit.normal.isApprox(normal, 1e-6)) << axis << ' ' << side << ' ' << gap;
+                EXPECT_NEAR(hit.distance, gap, 1e-14);
+            }
+}
+
 TEST(Primitives, BadSizesAreNotUsable) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const Obstacle& shape : shapes()) EXPECT_TRUE(is_usable_primitive(shape));
