@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/fcl_hierarchy.h"
+#include "collision/motion_tree.h"
 #include "data/types.h"
 
 namespace cloth {
@@ -15,9 +15,7 @@ namespace cloth {
 ///     pairs.find(x, motion, 4e-3, threads);
 ///     for (const auto& [f, g] : pairs.found()) { ... may come within 4 mm ... }
 ///
-/// A hierarchy (FCL's, over the rest mesh) holds for each node the box of its vertices and the box
-/// of their motions. Two nodes are told apart by their relative motion, so a garment that flies
-/// through the room as a whole costs no more than one that rests. Neighbours are always found.
+/// Neighbours are always found.
 class FacePairs {
  public:
     FacePairs(const Points& rest, const Faces& faces);
@@ -31,29 +29,15 @@ class FacePairs {
     const std::vector<std::array<int, 2>>& found() const { return m_found; }
 
  private:
-    /// Coordinates in single precision, widened by what they are rounded by; the fourth lane,
-    /// always zero, lets the compiler compare all in one instruction.
-    struct Node {
-        float low[4], high[4];                  ///< of the vertices at t (m, from m_origin)
-        float least_motion[4], most_motion[4];  ///< during the step (m)
-        int left, right;                        ///< -1 in a leaf
-        int face;                               ///< of a leaf
-        int face_count;                         ///< faces below
-    };
     using Task = std::array<int, 2>;
 
-    void refit(const Points& x, const Points& motion);
-    void refit_leaf(Node& node, const Points& x, const Points& motion) const;
-    static bool are_apart(const Node& a, const Node& b, float distance);
     template <typename Emit>
     void expand(Task task, float distance, const Emit& emit) const;
     void make_tasks(float distance);
     void run_task(size_t index, float distance, std::vector<std::array<int, 2>>& result);
 
-    Faces m_faces;
-    std::vector<Node> m_nodes;
-    Eigen::RowVector3d m_origin = Eigen::RowVector3d::Zero();
-    float m_rounding = 0.0f;  ///< of a coordinate (m)
+    MotionTree m_tree;
+    bool m_is_small;  ///< not worth waking threads for
     std::vector<Task> m_tasks, m_next_tasks;
     std::vector<std::vector<Task>> m_stacks;                 ///< per task
     std::vector<std::vector<std::array<int, 2>>> m_results;  ///< per task

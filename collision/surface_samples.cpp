@@ -121,9 +121,7 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
     m_radius = proximity.settings().radius;
     const auto update = [&](int sample) {
         if (!has_changed(sample, changed)) return false;
-        const Corners at = corners(sample);
-        m_x.row(sample) = at.weight[0] * x.row(at.vertex[0]) + at.weight[1] * x.row(at.vertex[1]) +
-                          at.weight[2] * x.row(at.vertex[2]);
+        m_x.row(sample) = corners(sample).position(x);
         char& parted = m_parted[static_cast<size_t>(sample)];
         parted = skins_part(sample, contacts);
         m_distance[sample] = parted ? -m_radius : vouched_by_vertices(sample, x, contacts.distance);

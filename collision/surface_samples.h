@@ -24,6 +24,10 @@ class SurfaceSamples {
         std::array<int, 3> vertex;
         std::array<double, 3> weight;
         int count() const { return weight[2] > 0.0 ? 3 : 2; }
+        Vec3 position(const Points& x) const {
+            return weight[0] * x.row(vertex[0]) + weight[1] * x.row(vertex[1]) +
+                   weight[2] * x.row(vertex[2]);
+        }
     };
 
     explicit SurfaceSamples(const Garment& garment);
@@ -36,6 +40,9 @@ class SurfaceSamples {
     void find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,
                    const SurfaceContacts& contacts, double depth, const std::vector<char>* changed);
 
+    int count() const { return static_cast<int>(m_x.rows()); }
+    /// Whether not all of its vertices are pinned.
+    bool is_movable(int sample) const { return m_movable[static_cast<size_t>(sample)] != 0; }
     const std::vector<int>& deep() const { return m_deep; }  ///< samples, ascending
     double max_depth() const;                                ///< of the deep ones, or 0 (m)
 
