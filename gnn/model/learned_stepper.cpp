@@ -1,30 +1,17 @@
 #include "gnn/model/learned_stepper.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
+#include "gnn/physics/stopwatch.h"
 
 namespace cloth {
 
 namespace {
-
-class Stopwatch {
- public:
-    double lap_ms() {
-        const auto now = std::chrono::steady_clock::now();
-        const double ms = std::chrono::duration<double, std::milli>(now - m_start).count();
-        m_start = now;
-        return ms;
-    }
-
- private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 QuasiNewtonSettings refinement(const LearnedStepperSettings& settings) {
     const Refinement& refine = settings.refine;
@@ -90,13 +77,13 @@ StepReport LearnedStepper::step(const Boundary& boundary, double dt, ClothState&
     Stopwatch watch;
     m_proximity.query(state.x, boundary, m_contacts);
     m_ridges.find(m_proximity, boundary, state.x, m_contacts);
-    report.times.proximity = watch.lap_ms();
+    report.times.proximity = watch.lap();
     predict(boundary, dt, state, report);
-    watch.lap_ms();
+    watch.lap();
     refine(report);
-    report.times.solve += watch.lap_ms();
+    report.times.solve += watch.lap();
     report.finite = accept(boundary, dt, state, report);
-    report.times.contact = watch.lap_ms();
+    report.times.contact = watch.lap();
     return report;
 }
 
@@ -109,14 +96,14 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
     starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_guess);
     m_potential.separate_layers(m_guess);
     m_builder.build(state, boundary, m_potential, m_guess, m_features);
-    report.times.features = watch.lap_ms();
+    report.times.features = watch.lap();
     m_predictor->predict(m_graph, m_features, m_output);
     m_fell_back = m_output.rows() != m_guess.rows() || !m_output.allFinite();
     m_prediction = m_guess;
     if (!m_fell_back) m_prediction += m_features.scale * m_output;
     place_pins(*m_garment, boundary, m_prediction);
     if (m_settings.refine.iterations > 0) check_prediction();
-    report.times.solve = watch.lap_ms();
+    report.times.solve = watch.lap();
 }
 
 void LearnedStepper::check_prediction() {

@@ -1,8 +1,7 @@
 #include "gnn/physics/quasi_newton_stepper.h"
 
-#include <chrono>
-
 #include "gnn/physics/guess.h"
+#include "gnn/physics/stopwatch.h"
 
 namespace cloth {
 namespace {
@@ -10,20 +9,6 @@ namespace {
 // The contact energy keeps cloth at the contact distance; what ends closer than this was missed by
 // it (a vertex that left the plane of its face) and is moved by the last safety.
 constexpr double safety_distance = 5e-4;  // m
-
-class StopWatch {
- public:
-    /// Time since the last lap (ms).
-    double lap() {
-        const auto now = std::chrono::steady_clock::now();
-        const std::chrono::duration<double, std::milli> passed = now - m_last;
-        m_last = now;
-        return passed.count();
-    }
-
- private:
-    std::chrono::steady_clock::time_point m_last = std::chrono::steady_clock::now();
-};
 
 StepReport failed() {
     StepReport report;
@@ -57,7 +42,7 @@ std::string QuasiNewtonStepper::name() const {
 StepReport QuasiNewtonStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     if (!is_valid_step(*m_garment, state, boundary, dt)) return failed();
     StepReport report;
-    StopWatch watch;
+    Stopwatch watch;
     find_contacts(boundary, state);
     report.times.proximity = watch.lap();
 
