@@ -22,15 +22,17 @@ struct StepReport {
     int iterations = 0;            ///< solver or refinement iterations spent
     double residual = 0.0;         ///< |gradient| of the incremental potential after the step, over
                                    ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
-    double gain =
-        std::numeric_limits<double>::infinity();  ///< what the last five quasi-Newton
-                                                  ///< iterations gained, as a distance (m), see
-                                                  ///< MinimiseReport; +inf: there were fewer
+    /// What the last five quasi-Newton iterations gained, as a distance (m), see MinimiseReport;
+    /// +inf: there were fewer.
+    double gain = std::numeric_limits<double>::infinity();
     bool converged = false;        ///< the stepper's own tolerance was met
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
     double max_entry = 0.0;  ///< deepest vertex before the last safety pushed it out (m): a contact
                              ///< that the step did not foresee
+    /// How thick the thinnest obstacle is that the garment went through on the way (m), see
+    /// PassageFinder; +inf: none was found. Looked for by WatchedStepper.
+    double passed = std::numeric_limits<double>::infinity();
     bool finite = true;            ///< false: the state was left as it was before the step
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only

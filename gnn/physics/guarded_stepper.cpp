@@ -9,76 +9,27 @@
 #include "data/errors.h"
 #include "gnn/physics/guess.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/watched_stepper.h"
 
 namespace cloth {
 namespace {
-
-constexpr double reach = 0.05;  // surfaces this near the garment's box count (m)
-
-using Box = Eigen::AlignedBox3d;
-
-Box box_of(const Points& x) {
-    return Box(Vec3(x.colwise().minCoeff()), Vec3(x.colwise().maxCoeff()));
-}
-
-/// The garment and where its mean motion takes it, with some reach.
-Box swept_box(const ClothState& state, const Vec3& shift) {
-    Box box = box_of(state.x);
-    box.extend(Box(box).translate(shift));
-    return Box(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach));
-}
-
-double mesh_motion(const Obstacle& mesh, const Box& box, const Vec3& shift) {
-    if (mesh.x0.rows() != mesh.x1.rows()) return 0.0;
-    double farthest = 0.0;
-    for (Eigen::Index i = 0; i < mesh.x0.rows(); ++i) {
-        const Vec3 from = mesh.x0.row(i), to = mesh.x1.row(i);
-        const double motion = (to - from - shift).squaredNorm();
-        if (motion <= farthest) continue;
-        Box path(from.cwiseMin(to), from.cwiseMax(to));
-        if (box.intersects(path)) farthest = motion;
-    }
-    return std::sqrt(farthest);
-}
-
-/// Of a sphere around a primitive that holds it; a plane does not turn noticeably where cloth is.
-double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift) {
-    const double size = shape.radius + shape.half_extents.norm();
-    const Vec3 from = shape.pose0.translation(), to = shape.pose1.translation();
-    const Box path(from.cwiseMin(to) - Vec3::Constant(size),
-                   from.cwiseMax(to) + Vec3::Constant(size));
-    if (shape.shape != ObstacleShape::plane && !box.intersects(path)) return 0.0;
-    const Eigen::AngleAxisd turn(
-        Eigen::Matrix3d(shape.pose0.linear().transpose() * shape.pose1.linear()));
-    return (to - from - shift).norm() + std::abs(turn.angle()) * size;
-}
 
 void check(const GuardSettings& settings) {
     check_range("GuardSettings.max_motion", settings.max_motion, 0.01, 1.0);
     check_range("GuardSettings.max_entry", settings.max_entry, 1e-3, 0.1);
     check_range("GuardSettings.fine_motion", settings.fine_motion, 0.01, 1.0);
+    check_range("GuardSettings.watch_motion", settings.watch_motion, 5e-3, 1.0);
+    check_range("GuardSettings.passed_motion", settings.passed_motion, 1e-3, 1.0);
     check_range("GuardSettings.max_substeps", settings.max_substeps, 1, 64);
 }
 
-}  // namespace
-
-double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
-                       const ClothState& state) {
-    if (state.x.rows() == 0) return 0.0;
-    const Vec3 shift = dt * state.v.colwise().mean().transpose();
-    const Box box = swept_box(state, shift);
-    double farthest = 0.0;
-    for (size_t p = 0; p < garment.pins().size(); ++p) {
-        const Vec3 motion =
-            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) - state.x.row(garment.pins()[p]);
-        farthest = std::max(farthest, (motion - shift).norm());
-    }
-    for (const Obstacle& obstacle : boundary.obstacles)
-        farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
-                                          ? mesh_motion(obstacle, box, shift)
-                                          : primitive_motion(obstacle, box, shift));
-    return farthest;
+std::unique_ptr<Stepper> watched(const Garment& garment, std::unique_ptr<Stepper> stepper,
+                                 const GuardSettings& settings) {
+    if (settings.max_substeps == 1) return stepper;  // nothing could be done about it
+    return std::make_unique<WatchedStepper>(garment, std::move(stepper), settings.watch_motion);
 }
+
+}  // namespace
 
 std::unique_ptr<Stepper> make_physics_cloth(const Garment& garment,
                                             const QuasiNewtonSettings& settings,
@@ -94,6 +45,7 @@ GuardedStepper::GuardedStepper(const Garment& garment, std::unique_ptr<Stepper> 
     : m_garment(&garment), m_inner(std::move(inner)), m_settings(std::move(settings)) {
     if (!m_inner) throw ArgumentError("stepper", "is null", "give the stepper to be guarded");
     check(m_settings);
+    m_inner = watched(garment, std::move(m_inner), m_settings);
     QuasiNewtonStepper(garment, m_settings.solver);  // refuses its settings here, not in a step
 }
 
@@ -108,31 +60,47 @@ StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState&
     return guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
 }
 
+/// A step that turns out to be too coarse is taken once more, as finely as its report asks for.
 StepReport GuardedStepper::guarded_step(const Boundary& boundary, double dt, ClothState& state) {
     const double motion = relative_motion(*m_garment, boundary, dt, state);
     const int foreseen = substeps_for(motion, m_settings.max_motion);
-    if (foreseen > 1) return cut_step(foreseen, boundary, dt, state);
-    const int fine = substeps_for(motion, m_settings.fine_motion);
-    if (fine > 1) m_before = state;
-    const StepReport report = m_inner->step(boundary, dt, state);
-    if (m_settings.max_substeps == 1) return report;
-    if (!report.finite) return cut_step(2, boundary, dt, state);
-    if (fine == 1 || !(report.max_entry > m_settings.max_entry)) return report;
-    const StepReport finer = cut_step(fine, boundary, dt, m_before);
-    if (!finer.finite) {  // better the first step than none
-        m_last_substeps = 1;
-        --m_guarded_steps;
-        return report;
-    }
-    std::swap(state, m_before);
-    return finer;
+    const bool may_repeat = foreseen < m_settings.max_substeps;
+    if (may_repeat) m_before = state;
+    const StepReport report = take(foreseen, boundary, dt, state);
+    const int finer = may_repeat ? substeps_after(report, motion) : foreseen;
+    if (finer > foreseen) {
+        const StepReport repeated = take(finer, boundary, dt, m_before);
+        if (repeated.finite || !report.finite) {
+            if (repeated.finite) std::swap(state, m_before);
+            count(finer);
+            return repeated;
+        }
+    }  // better the first step than none
+    count(foreseen);
+    return report;
 }
 
-StepReport GuardedStepper::cut_step(int substeps, const Boundary& boundary, double dt,
-                                    ClothState& state) {
+void GuardedStepper::count(int substeps) {
     m_last_substeps = substeps;
-    ++m_guarded_steps;
+    m_guarded_steps += substeps > 1;
+}
+
+StepReport GuardedStepper::take(int substeps, const Boundary& boundary, double dt,
+                                ClothState& state) {
+    if (substeps == 1) return m_inner->step(boundary, dt, state);
     return fallback(substeps).step(boundary, dt, state);
+}
+
+/// How finely a step of this motion should have been taken.
+int GuardedStepper::substeps_after(const StepReport& report, double motion) const {
+    int substeps = report.finite ? 1 : 2;
+    if (report.max_entry > m_settings.max_entry)
+        substeps = std::max(substeps, substeps_for(motion, m_settings.fine_motion));
+    if (std::isfinite(report.passed))
+        substeps =
+            std::max(substeps,
+                     substeps_for(motion, std::min(m_settings.passed_motion, 0.5 * report.passed)));
+    return substeps;
 }
 
 /// Powers of two, so that few matrices are factorised.
@@ -146,7 +114,9 @@ Stepper& GuardedStepper::fallback(int substeps) {
     std::unique_ptr<SubsteppedStepper>& made = m_fallbacks[substeps];
     if (!made)
         made = std::make_unique<SubsteppedStepper>(
-            *m_garment, std::make_unique<QuasiNewtonStepper>(*m_garment, m_settings.solver),
+            *m_garment,
+            watched(*m_garment, std::make_unique<QuasiNewtonStepper>(*m_garment, m_settings.solver),
+                    m_settings),
             substeps);
     return *made;
 }

@@ -5,6 +5,7 @@
 
 #include "collision/limb_overlap.h"
 #include "gnn/physics/quasi_newton.h"
+#include "gnn/physics/relative_motion.h"
 #include "gnn/physics/substepped_stepper.h"
 
 namespace cloth {
@@ -18,14 +19,20 @@ struct GuardSettings {
     /// went past a surface: they are taken again in sub-steps of `fine_motion`, 1e-3 to 0.1.
     double max_entry = 0.01;
     double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
+    /// Steps of more motion than this (m, 5e-3 to 1) are searched for solids that the garment went
+    /// through on the way, see PassageFinder. They are taken again in sub-steps of `passed_motion`,
+    /// or of half as much motion as the solid is thick: in these the nearest surface is the one
+    /// that the cloth came from.
+    double watch_motion = 0.02;
+    double passed_motion = 0.01;                                          ///< (m), 1e-3 to 1
     int max_substeps = 16;                                                ///< 1 to 64
     QuasiNewtonSettings solver = QuasiNewtonSettings::controlled(5, 50);  ///< of a sub-step
 };
 
 /// Another stepper wherever it can be trusted, the quasi-Newton solver in sub-steps elsewhere:
 /// where obstacles or pins move too fast for one step, where the step failed, and where it went
-/// past a surface, such as a hand that swings through a hem. A jump of the body by metres
-/// (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
+/// past a surface or through a solid, such as a hand that swings through a hem. A jump of the body
+/// by metres (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
 ///
 /// Limbs of a body that pass through each other are handled as LimbOverlap says, for any stepper.
 ///
@@ -55,8 +62,10 @@ class GuardedStepper : public Stepper {
 
  private:
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
-    StepReport cut_step(int substeps, const Boundary& boundary, double dt, ClothState& state);
+    StepReport take(int substeps, const Boundary& boundary, double dt, ClothState& state);
     int substeps_for(double motion, double most) const;
+    int substeps_after(const StepReport& report, double motion) const;
+    void count(int substeps);
     Stepper& fallback(int substeps);
 
     const Garment* m_garment;
@@ -80,11 +89,5 @@ class GuardedStepper : public Stepper {
 std::unique_ptr<Stepper> make_physics_cloth(
     const Garment& garment, const QuasiNewtonSettings& settings = QuasiNewtonSettings::controlled(),
     const GuardSettings& guard = {});
-
-/// How far (m) pins, and surfaces that may touch the garment, move at most during the step,
-/// relative to the garment's mean motion. Meshes: their vertices in the box that garment and motion
-/// span.
-double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
-                       const ClothState& state);
 
 }  // namespace cloth

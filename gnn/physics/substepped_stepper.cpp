@@ -52,6 +52,7 @@ void add(const StepReport& part, StepReport& report) {
     report.converged = part.converged && report.converged;
     report.max_penetration = part.max_penetration;
     report.max_entry = std::max(report.max_entry, part.max_entry);
+    report.passed = std::min(report.passed, part.passed);
     report.tangles = part.tangles;
     report.first_tangle = part.first_tangle;
     report.times.proximity += part.times.proximity;

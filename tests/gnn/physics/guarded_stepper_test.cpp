@@ -5,6 +5,7 @@
 #include "data/errors.h"
 #include "data/sheet.h"
 #include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/watched_stepper.h"
 
 namespace cloth {
 namespace {
@@ -167,6 +168,113 @@ TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheInnersAffair) {
     expect_inner(0.02, 0.03);
 }
 
+/// A plate of 3 cm that moves along x.
+Obstacle plate(double from, double to) {
+    Obstacle box;
+    box.shape = ObstacleShape::box;
+    box.half_extents = Vec3(0.015, 0.2, 0.2);
+    box.pose0.translation() = Vec3(from, 0, 0);
+    box.pose1.translation() = Vec3(to, 0, 0);
+    return box;
+}
+
+/// The same as a mesh.
+Obstacle as_mesh(const Obstacle& box) {
+    Obstacle mesh;
+    Faces faces(12, 3);
+    faces << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6,
+        2, 1, 3, 7, 1, 7, 5;
+    mesh.faces = std::make_shared<const Faces>(faces);
+    mesh.x0.resize(8, 3);
+    for (int i = 0; i < 8; ++i)
+        mesh.x0.row(i) =
+            box.half_extents.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    mesh.x1 = mesh.x0.rowwise() + box.pose1.translation().transpose();
+    mesh.x0 = mesh.x0.rowwise() + box.pose0.translation().transpose();
+    return mesh;
+}
+
+/// Flies to where it is told, through anything.
+class Flying : public Stepper {
+ public:
+    explicit Flying(const Vec3& way) : m_way(way) {}
+    std::string name() const override { return "flying"; }
+    StepReport step(const Boundary&, double h, ClothState& state) override {
+        state.x.rowwise() += m_way.transpose();
+        state.time += h;
+        return {};
+    }
+
+ private:
+    Vec3 m_way;
+};
+
+class Through : public Guard, public ::testing::WithParamInterface<bool> {
+ protected:
+    void place(const Obstacle& box) { m_boundary.obstacles = {GetParam() ? as_mesh(box) : box}; }
+};
+
+TEST_P(Through, AStepThatWentThroughASolidIsTakenAgainInSubsteps) {
+    place(plate(-0.03, 0.029));
+    GuardSettings settings;
+    for (const double motion : {0.01, 0.1}) {
+        settings.passed_motion = motion;
+        GuardedStepper guarded(m_garment, std::make_unique<Flying>(Vec3(0.005, 0, 0)), settings);
+        ClothState state = m_state;
+        const StepReport report = guarded.step(m_boundary, dt, state);
+        ASSERT_TRUE(report.finite);
+        EXPECT_EQ(guarded.last_substeps(), motion < 0.015 ? 8 : 4)
+            << "5.9 cm in parts of at most 1 cm, or half of the plate's 3 cm";
+        EXPECT_EQ(guarded.guarded_steps(), 1);
+        EXPECT_TRUE(std::isinf(report.passed));
+        for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+            const Vec3 rest = m_garment.rest().vertices.row(i);
+            const bool in_its_way = std::max(std::abs(rest.y()), std::abs(rest.z())) < 0.19;
+            EXPECT_TRUE(!in_its_way || state.x(i, 0) > 0.0439) << "vertex " << i;
+        }
+    }
+}
+
+TEST_P(Through, AWatcherSaysHowThickItWas) {
+    place(plate(-0.03, 0.029));
+    const auto passed = [&](double least_motion) {
+        ClothState state = m_state;
+        WatchedStepper watched(m_garment, std::make_unique<Flying>(Vec3(0.005, 0, 0)),
+                               least_motion);
+        const double thickness = watched.step(m_boundary, dt, state).passed;
+        EXPECT_EQ(watched.name(), "flying");
+        EXPECT_EQ(state.x, m_state.x.rowwise() + Eigen::RowVector3d(0.005, 0, 0));
+        return thickness;
+    };
+    EXPECT_NEAR(passed(0.02), 0.03, 1e-5);
+    EXPECT_TRUE(std::isinf(passed(0.07))) << "too slow to be watched";
+    place(plate(-0.09, -0.03));
+    EXPECT_TRUE(std::isinf(passed(0.02))) << "stays on its side";
+}
+
+TEST_P(Through, WithoutSubstepsNothingIsWatched) {
+    place(plate(-0.03, 0.029));
+    GuardSettings settings;
+    settings.max_substeps = 1;
+    GuardedStepper guarded(m_garment, std::make_unique<Flying>(Vec3(0.005, 0, 0)), settings);
+    EXPECT_TRUE(std::isinf(guarded.step(m_boundary, dt, m_state).passed));
+    EXPECT_EQ(guarded.last_substeps(), 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
+                         [](const auto& scene) { return scene.param ? "mesh" : "box"; });
+
+TEST_F(Guard, AWatcherOfNothingIsRefused) {
+    EXPECT_THROW(WatchedStepper(m_garment, nullptr, 0.02), ArgumentError);
+}
+
+TEST_F(Guard, AWatcherLeavesInvalidStepsToTheStepper) {
+    WatchedStepper watched(m_garment, quasi_newton(m_garment), 0.02);
+    const ClothState before = m_state;
+    EXPECT_FALSE(watched.step(m_boundary, -1.0, m_state).finite);
+    EXPECT_EQ(m_state.x, before.x);
+}
+
 TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
     m_boundary.obstacles = {ball(-0.2, -0.13)};
     const Points moved = m_state.x.array() + 1.0;
@@ -254,6 +362,12 @@ TEST_F(Guard, RefusesSettingsOutOfRange) {
     EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
     settings = {};
     settings.fine_motion = std::nan("");
+    EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
+    settings = {};
+    settings.watch_motion = 1e-3;
+    EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
+    settings = {};
+    settings.passed_motion = 0.0;
     EXPECT_THROW(GuardedStepper(m_garment, quasi_newton(m_garment), settings), ArgumentError);
     settings = {};
     settings.max_substeps = 0;
