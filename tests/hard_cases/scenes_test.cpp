@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/passages.h"
 #include "collision/proximity.h"
+#include "data/errors.h"
 #include "data/mesh_quality.h"
 #include "demos/compare/solver_factory.h"
 #include "demos/hard_cases/hard_cases.h"
@@ -137,4 +139,39 @@ TEST(HardScenes, SurfacesToDrawLieOnTheObstacles) {
         Proximity().signed_distance(surface.vertices, one, StepEnd::end, distance);
         EXPECT_LT(distance.cwiseAbs().maxCoeff(), 1e-6) << name;
     }
+}
+
+/// Frames, of the first 150, in which something went through the shirt.
+int frames_passed(const HardCase& hard, double watch_motion) {
+    const HardScene scene(hard.parts(), hard.frames);
+    GuardSettings guard;
+    guard.watch_motion = watch_motion;
+    const auto stepper =
+        make_physics_cloth(scene.garment(), QuasiNewtonSettings::controlled(), guard);
+    const auto& guarded = dynamic_cast<const GuardedStepper&>(*stepper);
+    ClothState state = scene.start();
+    PassageFinder passages(scene.garment());
+    int frames = 0;
+    for (int frame = 0; frame < 150; ++frame) {
+        const Points before = state.x;
+        Boundary boundary = scene.boundary_of_frame(frame);
+        const StepReport report = stepper->step(boundary, scene.dt(), state);
+        boundary.ignored_limbs = guarded.ignored_limbs();
+        // Over sub-steps paths are bent: what went through in them, the report says.
+        frames += guarded.last_substeps() > 1
+                      ? std::isfinite(report.passed)
+                      : !passages.find(boundary, before, state.x, 0).empty();
+    }
+    return frames;
+}
+
+TEST(HardScenes, HandsDoNotGoThroughTheShirt) {
+    HardCase hard;
+    try {
+        hard = motion_case("29_07_basketball_signals", "tshirt_1000");
+    } catch (const LoadError& error) {
+        GTEST_SKIP() << error.what();
+    }
+    EXPECT_GE(frames_passed(hard, 1.0), 5) << "the scene is no test";
+    EXPECT_LE(frames_passed(hard, GuardSettings().watch_motion), 1);
 }
