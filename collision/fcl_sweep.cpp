@@ -7,8 +7,8 @@
 
 namespace cloth {
 
-// FCL's closed form for the cubic loses one touch in five where the triangle hardly turns; its
-// interval Newton method loses none (tests/collision/fcl_sweep_test.cpp).
+// FCL also has a closed form for the cubic. It cancels where the triangle hardly turns, and then
+// loses touches.
 constexpr bool interval_newton = true;
 
 bool first_touch(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& start,
