@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "collision/faces_in_range.h"
 #include "collision/fcl_sweep.h"
 #include "collision/gather_in_order.h"
 #include "collision/primitive_sweep.h"
@@ -32,10 +33,6 @@ struct Place {
     int face = -1;
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
 };
-
-bool faces_in_range(const Faces& faces, Eigen::Index vertex_count) {
-    return faces.rows() > 0 && faces.minCoeff() >= 0 && faces.maxCoeff() < vertex_count;
-}
 
 /// Where a point that moves from p0 to p1 crosses a face, and whether to the outside.
 bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corners& end, int face,
@@ -180,7 +177,8 @@ void PassageFinder::find_in_mesh(const Boundary& boundary, int obstacle, const P
     MovingMesh& body = moving(mesh);
     body.used = true;
     if (!body.tree || !mesh.x0.allFinite() || !mesh.x1.allFinite()) return;
-    body.tree->refit(mesh.x0, mesh.x1 - mesh.x0);
+    m_motion = mesh.x1 - mesh.x0;
+    body.tree->refit(mesh.x0, m_motion);
     const int count = static_cast<int>(x0.rows());
     const auto find_part = [&](int part, std::vector<Crossing>& out) {
         std::vector<int> stack;

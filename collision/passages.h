@@ -73,6 +73,7 @@ class PassageFinder {
     std::vector<Crossing> m_crossings;
     std::vector<std::vector<Crossing>> m_parts;
     std::vector<int> m_rows;
+    Points m_motion;  ///< of a mesh's vertices (m)
     Proximity m_proximity;
     SurfaceContacts m_contacts;  ///< |V|
     std::vector<Passage> m_found;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "collision/faces_in_range.h"
 #include "collision/mesh_surface.h"
 #include "collision/primitives.h"
 #include "collision/triangle.h"
@@ -48,10 +49,6 @@ struct Nearest {
     SurfaceHit on_mesh;
     PrimitiveHit on_primitive;
 };
-
-bool faces_in_range(const Faces& faces, Eigen::Index vertex_count) {
-    return faces.rows() > 0 && faces.minCoeff() >= 0 && faces.maxCoeff() < vertex_count;
-}
 
 int* hints_for(CachedMesh& mesh, size_t count) {
     auto& sets = mesh.hint_sets;

@@ -1,14 +1,12 @@
 #include "collision/passages.h"
 
 #include <gtest/gtest.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "collision/brute_force.h"
-#include "collision/primitives.h"
 #include "data/sheet.h"
 #include "test_meshes.h"
 
