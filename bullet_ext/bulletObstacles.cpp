@@ -125,8 +125,7 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
     if (mesh.faces->minCoeff() < 0 || mesh.faces->maxCoeff() >= mesh.x0.rows())
         throw ArgumentError("animated obstacle", "a face refers to a vertex that does not exist",
                             "number vertices from 0 to |V| - 1");
-    if (mesh.limbs && (mesh.limbs->size() != static_cast<size_t>(mesh.faces->rows()) ||
-                       *std::max_element(mesh.limbs->begin(), mesh.limbs->end()) >= max_limbs))
+    if (mesh.limbs && !are_limbs_of(*mesh.faces, *mesh.limbs))
         throw ArgumentError("animated obstacle",
                             "has not one limb from 0 to 31 for each of its " +
                                 std::to_string(mesh.faces->rows()) + " faces",

@@ -15,10 +15,7 @@ static constexpr float infinity = std::numeric_limits<float>::infinity();
 ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, double radius,
                                  const std::vector<std::uint8_t>* limbs)
     : m_faces(&faces), m_radius(radius), m_vertices(vertices) {
-    const auto usable = [](std::uint8_t limb) { return limb < max_limbs; };
-    if (limbs && limbs->size() == static_cast<size_t>(faces.rows()) &&
-        std::all_of(limbs->begin(), limbs->end(), usable))
-        m_limbs = *limbs;
+    if (limbs && are_limbs_of(faces, *limbs)) m_limbs = *limbs;
     build_nodes();
     mark_limbs();
     m_local.resize(static_cast<size_t>(vertices.rows()));

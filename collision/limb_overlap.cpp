@@ -11,10 +11,6 @@ LimbSet only(size_t limb) {
     return LimbSet(1) << limb;
 }
 
-bool are_in_range(const std::vector<std::uint8_t>& limbs) {
-    return std::all_of(limbs.begin(), limbs.end(), [](int limb) { return limb < max_limbs; });
-}
-
 }  // namespace
 
 LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
@@ -27,23 +23,21 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(setti
 /// step. Obstacles without limbs may come and go.
 bool LimbOverlap::learn_limbs(const Boundary& boundary) {
     m_found.clear();
-    for (const Obstacle& obstacle : boundary.obstacles)
-        if (has_limbs(obstacle) && are_in_range(*obstacle.limbs)) m_found.push_back(obstacle.limbs);
+    m_has_limbs.clear();
+    for (const Obstacle& obstacle : boundary.obstacles) {
+        m_has_limbs.push_back(has_limbs(obstacle));
+        if (m_has_limbs.back()) m_found.push_back(obstacle.limbs);
+    }
     std::sort(m_found.begin(), m_found.end());
     if (m_found != m_known) {
         m_known = m_found;
         m_joined.fill(0);
         m_home.clear();
         m_buried = 0;
-        for (const Obstacle& obstacle : boundary.obstacles)
-            if (is_known(obstacle)) add_joints(obstacle);
+        for (size_t k = 0; k < boundary.obstacles.size(); ++k)
+            if (m_has_limbs[k]) add_joints(boundary.obstacles[k]);
     }
     return !m_known.empty();
-}
-
-bool LimbOverlap::is_known(const Obstacle& obstacle) const {
-    return has_limbs(obstacle) &&
-           std::find(m_known.begin(), m_known.end(), obstacle.limbs) != m_known.end();
 }
 
 /// Limbs are joined where their faces share a vertex.
@@ -68,9 +62,9 @@ LimbSet LimbOverlap::joined(LimbSet limb) const {
 }
 
 LimbSet LimbOverlap::limb_at(const Boundary& boundary, int obstacle, int face) const {
-    if (obstacle < 0 || face < 0) return 0;
-    const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
-    return is_known(mesh) ? only((*mesh.limbs)[static_cast<size_t>(face)]) : 0;
+    const auto k = static_cast<size_t>(obstacle);
+    if (obstacle < 0 || face < 0 || !m_has_limbs[k]) return 0;
+    return only((*boundary.obstacles[k].limbs)[static_cast<size_t>(face)]);
 }
 
 LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {

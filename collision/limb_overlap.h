@@ -50,7 +50,6 @@ class LimbOverlap {
     using Limbs = std::shared_ptr<const std::vector<std::uint8_t>>;
 
     bool learn_limbs(const Boundary& boundary);
-    bool is_known(const Obstacle& obstacle) const;
     void add_joints(const Obstacle& obstacle);
     void find_homes(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);
@@ -65,6 +64,7 @@ class LimbOverlap {
 
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
+    std::vector<char> m_has_limbs;                 ///< each obstacle of the last step
     std::vector<Limbs> m_known, m_found;           ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
     LimbSet m_buried = 0;

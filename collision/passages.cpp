@@ -57,8 +57,8 @@ bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corn
 }
 
 /// -1: none, such as of a place that is not on a face.
-int limb_of(const Obstacle& obstacle, int face) {
-    return face >= 0 && has_limbs(obstacle) ? (*obstacle.limbs)[static_cast<size_t>(face)] : -1;
+int limb_of(const std::vector<std::uint8_t>* limbs, int face) {
+    return face >= 0 && limbs ? (*limbs)[static_cast<size_t>(face)] : -1;
 }
 
 /// Equal times, as at a shared edge, go to the lowest face.
@@ -158,12 +158,12 @@ void PassageFinder::complete(const Boundary& boundary, int obstacle, const Point
     }
 }
 
-void PassageFinder::report(const Boundary& boundary, const Crossing& crossing, int obstacle) {
+void PassageFinder::report(const Crossing& crossing, int obstacle,
+                           const std::vector<std::uint8_t>* limbs) {
     const Place& in = crossing.in;
     const Place& out = crossing.out;
     if (!in.known || !out.known || !(in.normal.dot(out.normal) < 0.0)) return;
-    const Obstacle& solid = boundary.obstacles[static_cast<size_t>(obstacle)];
-    const int limb = limb_of(solid, in.face), out_limb = limb_of(solid, out.face);
+    const int limb = limb_of(limbs, in.face), out_limb = limb_of(limbs, out.face);
     if (limb != out_limb && out_limb >= 0) return;
     const double thickness = (in.point - out.point).norm();
     if (thickness >= least_thickness)
@@ -180,12 +180,13 @@ void PassageFinder::find_in_mesh(const Boundary& boundary, int obstacle, const P
     m_motion = mesh.x1 - mesh.x0;
     body.tree->refit(mesh.x0, m_motion);
     const int count = static_cast<int>(x0.rows());
+    const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
     const auto find_part = [&](int part, std::vector<Crossing>& out) {
         std::vector<int> stack;
         const int end = std::min(count, (part + 1) * points_per_part);
         for (int i = part * points_per_part; i < end; ++i) {
             if (m_pinned[static_cast<size_t>(i)]) continue;
-            const LimbSet ignored = has_limbs(mesh) ? ignored_limbs(boundary, i) : 0;
+            const LimbSet ignored = limbs ? ignored_limbs(boundary, i) : 0;
             Crossing crossing = cross(mesh, *body.tree, x0.row(i), x1.row(i), ignored, stack);
             if (!crossing.in.known && !crossing.out.known) continue;
             crossing.point = i;
@@ -196,7 +197,7 @@ void PassageFinder::find_in_mesh(const Boundary& boundary, int obstacle, const P
                     find_part);
     complete(boundary, obstacle, x0, StepEnd::start);
     complete(boundary, obstacle, x1, StepEnd::end);
-    for (const Crossing& crossing : m_crossings) report(boundary, crossing, obstacle);
+    for (const Crossing& crossing : m_crossings) report(crossing, obstacle, limbs);
 }
 
 void PassageFinder::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
@@ -213,7 +214,7 @@ void PassageFinder::find_in_primitive(const Boundary& boundary, int obstacle, co
         };
         Crossing crossing{point, place(path.in), place(path.out)};
         if (path.out.distance < -shallow) crossing.out = {true, 1.0, -1, p1, -path.in.normal};
-        report(boundary, crossing, obstacle);
+        report(crossing, obstacle, nullptr);
     };
     const int count = static_cast<int>(x0.rows());
     for (int i = 0; i < count; ++i)

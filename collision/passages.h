@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -66,7 +67,7 @@ class PassageFinder {
     static Crossing cross(const Obstacle& mesh, const MotionTree& tree, const Vec3& p0,
                           const Vec3& p1, LimbSet ignored, std::vector<int>& stack);
     void complete(const Boundary& boundary, int obstacle, const Points& x, StepEnd end);
-    void report(const Boundary& boundary, const Crossing& crossing, int obstacle);
+    void report(const Crossing& crossing, int obstacle, const std::vector<std::uint8_t>* limbs);
 
     SurfaceSamples m_samples;
     std::vector<char> m_pinned;  ///< |V|

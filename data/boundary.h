@@ -37,10 +37,17 @@ struct Obstacle {
     double friction = 0.5;               ///< Coulomb coefficient, 0 to 1.5
 };
 
-/// Whether a mesh has a usable limb for each face.
+/// Whether these are one limb for each of a mesh's faces, all of them from 0 to 31.
+inline bool are_limbs_of(const Faces& faces, const std::vector<std::uint8_t>& limbs) {
+    static_assert((max_limbs & (max_limbs - 1)) == 0, "out of range: a bit above is set");
+    unsigned bits = 0;
+    for (const std::uint8_t limb : limbs) bits |= limb;
+    return limbs.size() == static_cast<std::size_t>(faces.rows()) && bits < max_limbs;
+}
+
+/// Whether a mesh has a usable limb for each face. It looks at each: not for inner loops.
 inline bool has_limbs(const Obstacle& mesh) {
-    return mesh.limbs && mesh.faces &&
-           mesh.limbs->size() == static_cast<std::size_t>(mesh.faces->rows());
+    return mesh.limbs && mesh.faces && are_limbs_of(*mesh.faces, *mesh.limbs);
 }
 
 /// All that a stepper knows of the outside for one step.

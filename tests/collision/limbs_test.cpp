@@ -194,7 +194,7 @@ TEST(Limbs, UnusableOnesAreNamedBySetUpAndDoNoHarm) {
         }
     };
     obstacle.limbs = std::make_shared<std::vector<std::uint8_t>>(3, 0);
-    EXPECT_NE(message(obstacle).find("one limb for each face"), std::string::npos);
+    EXPECT_NE(message(obstacle).find("one limb from 0 to 31 for each face"), std::string::npos);
     Obstacle far = obstacle;
     far.limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(far.faces->rows()), 32);
     EXPECT_NE(message(far).find("from 0 to 31"), std::string::npos);

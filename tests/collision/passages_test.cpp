@@ -257,6 +257,24 @@ TEST(Passages, PassOverPinsAndIgnoredLimbs) {
     EXPECT_EQ(vertices_of(passages.find(boundary, x, x, 0), x.rows()), expected);
 }
 
+TEST(Passages, LimbsOutOfRangeAreNone) {
+    const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
+    Obstacle obstacle = moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}));
+    Boundary boundary = boundary_of({obstacle});
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    PassageFinder passages(garment);
+    const std::set<int> through = vertices_of(passages.find(boundary, x, x, 0), x.rows());
+    ASSERT_GT(through.size(), 10u);
+    boundary.ignored_limbs.assign(static_cast<size_t>(x.rows()), ~LimbSet(0));
+    for (const size_t faces : {size_t(12), size_t(11)}) {
+        boundary.obstacles[0].limbs =
+            std::make_shared<std::vector<std::uint8_t>>(faces, std::uint8_t(faces == 12 ? 200 : 0));
+        EXPECT_EQ(vertices_of(passages.find(boundary, x, x, 0), x.rows()), through);
+        for (const Passage& passage : passages.found()) EXPECT_EQ(passage.limb, -1);
+    }
+}
+
 TEST(Passages, FromOneLimbIntoAnotherAreFolds) {
     // two blocks that overlap, as at a groin: in at the lower one, out at the upper one
     const TriMesh lower = scaled(cube(), {0.3, 0.02, 0.3});
