@@ -8,7 +8,7 @@
 #include <string>
 
 #include "bullet_ext/bulletShapes.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 
 namespace cloth {
 

@@ -9,7 +9,7 @@
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 using cloth::ArgumentError;
 using cloth::Garment;

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bullet_ext/bulletObstacles.h"
-#include "data/garment.h"
+#include "data/core/garment.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
@@ -70,7 +70,7 @@ struct btGnnSolverStatus {
 ///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
 /// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
 /// what
-///   contacts and anchors took from them, see ClothReactions. Cloth does not touch other soft
+///   contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
 ///   bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale

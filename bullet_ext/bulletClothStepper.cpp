@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "bullet_ext/bulletHulls.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

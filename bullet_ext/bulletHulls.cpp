@@ -6,7 +6,7 @@
 #include <Eigen/SVD>
 
 #include "bullet_ext/bulletClothStepper.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

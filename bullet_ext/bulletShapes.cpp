@@ -8,7 +8,7 @@
 #include <cstring>
 #include <map>
 
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 
 namespace cloth {
 

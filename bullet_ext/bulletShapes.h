@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "bullet_ext/bulletTypes.h"
-#include "data/boundary.h"
-#include "data/mesh.h"
+#include "data/core/boundary.h"
+#include "data/core/mesh.h"
 
 class btCollisionShape;
 

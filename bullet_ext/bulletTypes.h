@@ -8,7 +8,7 @@ BT_USE_DOUBLE_PRECISION and link bullet.pc (Debian), not bullet-float64.pc"
 
 #include <LinearMath/btTransform.h>
 
-#include "data/boundary.h"
+#include "data/core/boundary.h"
 
 namespace cloth {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bullet_ext/bulletObstacles.h"
-#include "data/cloth_state.h"
+#include "data/core/cloth_state.h"
 
 class btSoftBody;
 

@@ -2,7 +2,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

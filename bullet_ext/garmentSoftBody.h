@@ -1,8 +1,8 @@
 #pragma once
 
 #include "bullet_ext/bulletTypes.h"
-#include "data/cloth_state.h"
-#include "data/garment.h"
+#include "data/core/cloth_state.h"
+#include "data/core/garment.h"
 
 class btSoftBody;
 struct btSoftBodyWorldInfo;

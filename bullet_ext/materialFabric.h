@@ -1,6 +1,6 @@
 #pragma once
 
-#include "data/fabric.h"
+#include "data/core/fabric.h"
 
 class btSoftBody;
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

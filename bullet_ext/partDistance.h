@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bullet_ext/bulletShapes.h"
-#include "data/surface_distance.h"
+#include "data/core/surface_distance.h"
 
 namespace cloth {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bullet_ext/bulletTypes.h"
-#include "data/cloth_state.h"
+#include "data/core/cloth_state.h"
 
 class btSoftBody;
 
@@ -16,10 +16,10 @@ namespace cloth {
 /// of the stepper, with the influence that so many repetitions have, 1 - (1 - influence)^n. The
 /// node has the mass that it moves with, see massRatio(): the impulses cancel.
 ///
-/// @param state          the cloth at the start of the tick
-/// @param length         of the tick (s)
+/// @param state          the cloth at the start of the cloth step
+/// @param length         of the cloth step (s)
 /// @param world_step     (s)
-/// @param accelerations  |V| x 3 (m/s^2), or empty: of the nodes during the tick, added to
+/// @param accelerations  |V| x 3 (m/s^2), or empty: of the nodes during the cloth step, added to
 void pullSoftAnchors(btSoftBody& body, const Garment& garment, const ClothState& state,
                      double length, double world_step, Points& accelerations);
 

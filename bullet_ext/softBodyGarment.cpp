@@ -8,7 +8,7 @@
 #include <map>
 #include <sstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

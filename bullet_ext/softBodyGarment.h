@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bullet_ext/bulletTypes.h"
-#include "data/garment.h"
+#include "data/core/garment.h"
 
 namespace cloth {
 

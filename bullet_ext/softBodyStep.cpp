@@ -58,7 +58,7 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
 }
 
 SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, double reach) {
-    // A frame that took so long, or such a time scale, must not cost a thousand ticks.
+    // A frame that took so long, or such a time scale, must not cost a thousand cloth steps.
     constexpr double kLongest = 2.0;  // s
     m_time_scale = static_cast<double>(m_body.m_cfg.timescale);
     m_h = std::min(h * m_time_scale, kLongest);
@@ -73,16 +73,16 @@ SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, do
     takePins();
     const Box box = boxAhead(m_shown, m_h, reach);
     obstacles.watch(m_body, box.low, box.high);
-    const double end = m_h * (1.0 - 1e-3);  // float time steps must not cost an extra tick
-    while (!m_tick.valid || m_tick.begin + m_tick.length < end) {
-        startTick(result.steps == 0);
-        result.failed_steps += runTick(obstacles, reach) ? 0 : 1;
+    const double end = m_h * (1.0 - 1e-3);  // float time steps must not cost an extra cloth step
+    while (!m_cloth_step.valid || m_cloth_step.begin + m_cloth_step.length < end) {
+        startClothStep(result.steps == 0);
+        result.failed_steps += runClothStep(obstacles, reach) ? 0 : 1;
         ++result.steps;
     }
-    showTick();
+    showClothStep();
     writeNodes();
     m_reactions.apply(m_h, obstacles.solidsNear(m_body, box.low, box.high, h));
-    m_tick.begin -= m_h;
+    m_cloth_step.begin -= m_h;
     m_sleep.afterStep(m_shown.x, h, obstacles, box.low, box.high);
     return result;
 }
@@ -93,7 +93,7 @@ bool SoftBodyStep::sleepsOn(const BulletObstacles& obstacles) {
     m_shown.v.setZero();
     for (int i = 0; i < m_body.m_nodes.size() && i < m_shown.v.rows(); ++i)
         m_shown.v.row(i) = toVec3(m_body.m_nodes[i].m_v);
-    m_tick.valid = false;
+    m_cloth_step.valid = false;
     return false;
 }
 
@@ -139,7 +139,7 @@ void SoftBodyStep::takeNodes() {
         if (pinned[static_cast<size_t>(i)] || !(moved || pushed)) continue;
         if (moved) m_shown.x.row(i) = toVec3(node.m_x);
         if (pushed) m_shown.v.row(i) = toVec3(node.m_v);
-        m_tick.valid = false;
+        m_cloth_step.valid = false;
     }
 }
 
@@ -183,71 +183,73 @@ void SoftBodyStep::takePins() {
 
 Points SoftBodyStep::pinsAt(double time) const {
     if (time <= m_h) return m_pins_before + (time / m_h) * (m_pins_after - m_pins_before);
-    // Beyond the world step pins go on as they did in the same part of the last tick.
-    const double rest = (time - m_h) / (m_tick.begin + m_tick.length - m_h);
+    // Beyond the world step pins go on as they did in the same part of the last cloth step.
+    const double rest = (time - m_h) / (m_cloth_step.begin + m_cloth_step.length - m_h);
     return m_pins_after + std::min(rest, 1.0) * m_pins_drift;
 }
 
-Boundary SoftBodyStep::boundaryOfTick(BulletObstacles& obstacles, const Vec3& low,
-                                      const Vec3& high) {
+Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles, const Vec3& low,
+                                           const Vec3& high) {
     Boundary boundary;
     boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
-    boundary.pin_targets = pinsAt(m_tick.begin + m_tick.length);
+    boundary.pin_targets = pinsAt(m_cloth_step.begin + m_cloth_step.length);
     boundary.obstacles = obstacles.near(
-        m_body, low, high, {m_tick.begin / m_time_scale, m_tick.length / m_time_scale});
+        m_body, low, high, {m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
     if (!m_impulse.isZero(0.0)) {
-        boundary.accelerations = m_impulse / m_tick.length;
+        boundary.accelerations = m_impulse / m_cloth_step.length;
         for (int i = 0; i < m_body.m_nodes.size(); ++i)
             boundary.accelerations.row(i) *= static_cast<double>(m_body.m_nodes[i].m_im);
         m_impulse.setZero();
     }
-    pullSoftAnchors(m_body, *m_garment, m_tick.from, m_tick.length, m_h, boundary.accelerations);
+    pullSoftAnchors(m_body, *m_garment, m_cloth_step.from, m_cloth_step.length, m_h,
+                    boundary.accelerations);
     return boundary;
 }
 
-/// The next tick starts where the last one ended, or where the nodes are.
-void SoftBodyStep::startTick(bool first_of_step) {
-    const bool goes_on = m_tick.valid;
-    m_pins_drift = goes_on && first_of_step ? Points(m_pins_before - m_pins_at_tick)
+/// The next cloth step starts where the last one ended, or where the nodes are.
+void SoftBodyStep::startClothStep(bool first_of_step) {
+    const bool goes_on = m_cloth_step.valid;
+    m_pins_drift = goes_on && first_of_step ? Points(m_pins_before - m_pins_at_cloth_step)
                                             : Points::Zero(m_pins_before.rows(), 3);
-    m_pins_at_tick = m_pins_after;
-    m_tick.from = goes_on ? m_tick.to : m_shown;
-    m_tick.begin = goes_on ? m_tick.begin + m_tick.length : 0.0;
+    m_pins_at_cloth_step = m_pins_after;
+    m_cloth_step.from = goes_on ? m_cloth_step.to : m_shown;
+    m_cloth_step.begin = goes_on ? m_cloth_step.begin + m_cloth_step.length : 0.0;
     const double fixed = m_stepper->fixed_dt();
-    m_tick.length = fixed > 0.0 ? fixed : m_h - m_tick.begin;
-    m_tick.valid = true;
-    const Points pins_now = pinsAt(m_tick.begin);
+    m_cloth_step.length = fixed > 0.0 ? fixed : m_h - m_cloth_step.begin;
+    m_cloth_step.valid = true;
+    const Points pins_now = pinsAt(m_cloth_step.begin);
     const std::vector<int>& pins = m_garment->pins();
     for (size_t p = 0; p < pins.size(); ++p)
-        m_tick.from.x.row(pins[p]) = pins_now.row(static_cast<Eigen::Index>(p));
+        m_cloth_step.from.x.row(pins[p]) = pins_now.row(static_cast<Eigen::Index>(p));
 }
 
-bool SoftBodyStep::runTick(BulletObstacles& obstacles, double reach) {
-    const ClothState& from = m_tick.from;
-    const Box box = boxAhead(from, m_tick.length, reach);
-    const Boundary boundary = boundaryOfTick(obstacles, box.low, box.high);
+bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
+    const ClothState& from = m_cloth_step.from;
+    const Box box = boxAhead(from, m_cloth_step.length, reach);
+    const Boundary boundary = boundaryOfClothStep(obstacles, box.low, box.high);
     ClothState to = from;
-    m_report = m_stepper->step(boundary, m_tick.length, to);
+    m_report = m_stepper->step(boundary, m_cloth_step.length, to);
     m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
-    m_tick.to = m_report.finite ? std::move(to) : from;
-    m_tick.to.time = from.time + m_tick.length;
+    m_cloth_step.to = m_report.finite ? std::move(to) : from;
+    m_cloth_step.to.time = from.time + m_cloth_step.length;
     if (m_report.finite)
-        m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_tick.to, m_tick.length,
-                             obstacles.solidsNear(m_body, box.low, box.high,
-                                                  (m_tick.begin + m_tick.length) / m_time_scale)});
+        m_reactions.collect(
+            {*m_garment, *m_stepper, boundary, from, m_cloth_step.to, m_cloth_step.length,
+             obstacles.solidsNear(m_body, box.low, box.high,
+                                  (m_cloth_step.begin + m_cloth_step.length) / m_time_scale)});
     const double damping = std::min(static_cast<double>(m_body.m_cfg.kDP), 1.0);
-    if (damping > 0.0) m_tick.to.v *= std::pow(1.0 - damping, m_tick.length / m_h);
+    if (damping > 0.0) m_cloth_step.to.v *= std::pow(1.0 - damping, m_cloth_step.length / m_h);
     return m_report.finite;
 }
 
-void SoftBodyStep::showTick() {
-    const double s = std::clamp((m_h - m_tick.begin) / m_tick.length, 0.0, 1.0);
+void SoftBodyStep::showClothStep() {
+    const double s = std::clamp((m_h - m_cloth_step.begin) / m_cloth_step.length, 0.0, 1.0);
     if (s > 1.0 - 1e-3) {
-        m_shown = m_tick.to;
+        m_shown = m_cloth_step.to;
     } else {
-        m_shown.x = m_tick.from.x + s * (m_tick.to.x - m_tick.from.x);
-        m_shown.v = m_tick.from.v + s * (m_tick.to.v - m_tick.from.v);
-        m_shown.time = m_tick.from.time + s * m_tick.length;
+        m_shown.x = m_cloth_step.from.x + s * (m_cloth_step.to.x - m_cloth_step.from.x);
+        m_shown.v = m_cloth_step.from.v + s * (m_cloth_step.to.v - m_cloth_step.from.v);
+        m_shown.time = m_cloth_step.from.time + s * m_cloth_step.length;
     }
     const std::vector<int>& pins = m_garment->pins();
     for (size_t p = 0; p < pins.size(); ++p)

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bullet_ext/bulletObstacles.h"
-#include "bullet_ext/clothReactions.h"
 #include "bullet_ext/clothSleep.h"
+#include "bullet_ext/twoWayCoupling.h"
 #include "gnn/stepper.h"
 
 class btSoftBody;
@@ -16,15 +16,15 @@ namespace cloth {
 /// Joins a Bullet soft body to the Stepper that moves it.
 ///
 /// A world step of any length is served by a stepper with any time step. The stepper's steps
-/// ("ticks") follow each other without gaps: a tick starts as soon as the world's time passes the
-/// end of the last one, looks ahead with the velocities of obstacles and pins, and the nodes show
-/// the straight line between the tick's two ends. So cloth and obstacles show the same time; what
-/// an obstacle's acceleration changes within a tick is seen at the next one. Steppers that accept
-/// any time step use the world's, with no prediction at all.
+/// ("cloth steps") follow each other without gaps: a cloth step starts as soon as the world's time
+/// passes the end of the last one, looks ahead with the velocities of obstacles and pins, and the
+/// nodes show the straight line between the cloth step's two ends. So cloth and obstacles show the
+/// same time; what an obstacle's acceleration changes within a cloth step is seen at the next one.
+/// Steppers that accept any time step use the world's, with no prediction at all.
 ///
 /// Whatever the user does to nodes between steps counts: moved or pushed free nodes start a new
-/// tick from what the nodes say, pinned nodes are followed, node forces and wind act as impulses.
-/// Dynamic rigid bodies get what they gave to the cloth, see ClothReactions.
+/// cloth step from what the nodes say, pinned nodes are followed, node forces and wind act as
+/// impulses. Dynamic rigid bodies get what they gave to the cloth, see TwoWayCoupling.
 class SoftBodyStep {
  public:
     /// @param sleep_motion  cloth that moves less rests (m)
@@ -38,7 +38,7 @@ class SoftBodyStep {
     const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }
 
     struct Result {
-        int steps = 0;           ///< steps that the stepper made, 0 within a tick
+        int steps = 0;           ///< steps that the stepper made, 0 within a cloth step
         int failed_steps = 0;    ///< steps that it could not make: the cloth holds its shape
         int restored_nodes = 0;  ///< nodes that were not finite and were put back
     };
@@ -49,7 +49,7 @@ class SoftBodyStep {
     bool sleepsOn(const BulletObstacles& obstacles);
 
  private:
-    struct Tick {
+    struct StepSpan {
         ClothState from, to;
         double begin = 0.0;   ///< relative to the start of the present world step (s)
         double length = 0.0;  ///< (s)
@@ -63,27 +63,27 @@ class SoftBodyStep {
     void takeForces();
     void takePins();
     Points pinsAt(double time) const;
-    Boundary boundaryOfTick(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
-    void startTick(bool first_of_step);
-    bool runTick(BulletObstacles& obstacles, double reach);
-    void showTick();
+    Boundary boundaryOfClothStep(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
+    void startClothStep(bool first_of_step);
+    bool runClothStep(BulletObstacles& obstacles, double reach);
+    void showClothStep();
     void writeNodes();
 
     btSoftBody& m_body;
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
     StepReport m_report;
-    ClothReactions m_reactions;
+    TwoWayCoupling m_reactions;
     ClothSleep m_sleep;
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
-    Tick m_tick;
-    ClothState m_shown;            ///< what the nodes say, in doubles
-    Points m_impulse;              ///< |V| x 3 (N s): forces of the world steps since the last tick
-    Points m_pins_before;          ///< |pins| x 3 (m): at the start of the world step
-    Points m_pins_after;           ///< at its end
-    Points m_pins_at_tick;         ///< m_pins_after in the first world step of the tick
-    Points m_pins_drift;           ///< how far they moved in the rest of the last tick
+    StepSpan m_cloth_step;
+    ClothState m_shown;    ///< what the nodes say, in doubles
+    Points m_impulse;      ///< |V| x 3 (N s): forces of the world steps since the last cloth step
+    Points m_pins_before;  ///< |pins| x 3 (m): at the start of the world step
+    Points m_pins_after;   ///< at its end
+    Points m_pins_at_cloth_step;   ///< m_pins_after in the first world step of the cloth step
+    Points m_pins_drift;           ///< how far they moved in the rest of the last cloth step
     std::vector<float> m_written;  ///< |V| x 6: m_x and m_v as they were written
 };
 

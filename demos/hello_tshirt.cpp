@@ -13,9 +13,9 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
-#include "data/animated_body.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
+#include "data/body/animated_body.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "gnn/model/learned_cloth.h"
 
 int main(int argc, char** argv) try {
@@ -28,9 +28,8 @@ int main(int argc, char** argv) try {
                                cloth::Fabric::soft_cotton());
     const auto weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
-    btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
-        return cloth::make_learned_cloth(garment, weights);
-    });
+    btGnnSoftBodySolver solver(
+        [&](const cloth::Garment& garment) { return cloth::make_learned_cloth(garment, weights); });
 
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
@@ -61,8 +60,9 @@ int main(int argc, char** argv) try {
     }
     btVector3 low, high;
     cloth->getAabb(low, high);
-    std::printf("%d frames, %.1f ms each, shirt from %.2f to %.2f m, deepest vertex %.2f mm inside\n",
-                lead_in + frames, ms / (lead_in + frames), low.y(), high.y(), 1e3 * deepest);
+    std::printf(
+        "%d frames, %.1f ms each, shirt from %.2f to %.2f m, deepest vertex %.2f mm inside\n",
+        lead_in + frames, ms / (lead_in + frames), low.y(), high.y(), 1e3 * deepest);
     for (const btGnnSolverMessage& message : solver.status().messages)
         std::printf("%s\n", message.text.c_str());
     const auto& stepper = dynamic_cast<const cloth::GuardedStepper&>(*solver.stepperOf(cloth));

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "data/mesh_io.h"
-#include "data/paths.h"
-#include "data/tshirt.h"
+#include "data/authoring/tshirt.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 
 using namespace cloth;
 

@@ -10,7 +10,7 @@
 #include <iostream>
 #include <string>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "gnn/train/trainer.h"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <limits>
 #include <string>
 
-#include "data/boundary.h"
-#include "data/cloth_state.h"
+#include "data/core/boundary.h"
+#include "data/core/cloth_state.h"
 
 namespace cloth {
 
@@ -19,21 +19,22 @@ struct StageTimes {
 
 /// What happened inside one step; the per-frame path reports, it does not throw.
 struct StepReport {
-    int iterations = 0;            ///< solver or refinement iterations spent
-    double residual = 0.0;         ///< |gradient| of the incremental potential after the step, over
-                                   ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
+    int iterations = 0;  ///< solver or refinement iterations spent
+    double residual =
+        0.0;  ///< |gradient| of the incremental potential after the step, over
+              ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
     /// What the last five quasi-Newton iterations gained, as a distance (m), see MinimiseReport;
     /// +inf: there were fewer.
     double gain = std::numeric_limits<double>::infinity();
     bool converged = false;        ///< the stepper's own tolerance was met
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
-    double max_entry = 0.0;  ///< deepest vertex before the last safety pushed it out (m): a contact
-                             ///< that the step did not foresee
+    double max_entry = 0.0;  ///< deepest vertex before contact projection pushed it out (m): a
+                             ///< contact that the step did not foresee
     /// How thick the thinnest obstacle is that the garment went through on the way (m), see
-    /// PassageFinder; +inf: none was found. Looked for by WatchedStepper.
-    double passed = std::numeric_limits<double>::infinity();
-    bool finite = true;            ///< false: the state was left as it was before the step
+    /// TunnellingDetector; +inf: none was found. Looked for by WatchedStepper.
+    double tunnelled = std::numeric_limits<double>::infinity();
+    bool finite = true;  ///< false: the state was left as it was before the step
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only
     Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)
@@ -48,7 +49,7 @@ struct StepReport {
 /// Contract (tests/gnn/stepper_contract_test.cpp): pins land on their targets, equal inputs give
 /// equal bits for any thread count, and a failed step leaves `state` untouched.
 class Stepper {
-   public:
+ public:
     virtual ~Stepper() = default;
 
     virtual std::string name() const = 0;
@@ -61,8 +62,8 @@ class Stepper {
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
 
-    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3, N);
-    /// they sum to zero. What they leave of a step's change of momentum came from outside.
+    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
+    /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know
     virtual bool internal_forces(const Points& x, Points& forces) const {
         (void)x, (void)forces;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

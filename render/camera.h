@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "data/types.h"
+#include "data/core/types.h"
 
 namespace cloth {
 

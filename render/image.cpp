@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <fstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "render/replaced_file.h"
 
 namespace cloth {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "render/text.h"
 
 namespace cloth {

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "data/errors.h"
-#include "data/mesh.h"
+#include "data/core/errors.h"
+#include "data/core/mesh.h"
 #include "render/shaders.h"
 #include "render/text.h"
 

@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "data/types.h"
+#include "data/core/types.h"
 #include "render/image.h"
 
 namespace cloth {

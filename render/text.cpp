@@ -8,7 +8,7 @@
 #include <sstream>
 #include <vector>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

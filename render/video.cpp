@@ -12,7 +12,7 @@ extern "C" {
 #include <array>
 #include <cmath>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "render/replaced_file.h"
 
 namespace cloth {

@@ -2,7 +2,7 @@
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(FASTCLOTH_COMPONENTS data collision physics graph model bullet)
+set(FASTCLOTH_COMPONENTS core files body authoring collision physics graph model bullet)
 set(FASTCLOTH_INCLUDE_DIR ${CMAKE_INSTALL_INCLUDEDIR}/fastcloth)
 set(FASTCLOTH_ASSETS_DIR ${CMAKE_INSTALL_DATADIR}/fastcloth/assets)
 set(FASTCLOTH_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/FastCloth)
@@ -14,9 +14,7 @@ foreach(component ${FASTCLOTH_COMPONENTS})
 endforeach()
 set_target_properties(cloth_flags PROPERTIES EXPORT_NAME flags)  # warnings; nothing for users
 
-# Whoever passes Eigen objects to the libraries must align them as the libraries do.
-target_compile_definitions(cloth_data INTERFACE
-  $<INSTALL_INTERFACE:EIGEN_MAX_ALIGN_BYTES=16>
+target_compile_definitions(cloth_core INTERFACE
   $<INSTALL_INTERFACE:CLOTH_INSTALLED_ASSETS="$<INSTALL_PREFIX>/${FASTCLOTH_ASSETS_DIR}">)
 
 install(TARGETS ${installed_targets} EXPORT FastClothTargets
@@ -27,8 +25,8 @@ install(EXPORT FastClothTargets NAMESPACE FastCloth:: DESTINATION ${FASTCLOTH_CM
 
 install(FILES ${PROJECT_SOURCE_DIR}/gnn/stepper.h DESTINATION ${FASTCLOTH_INCLUDE_DIR}/gnn)
 foreach(folder data collision gnn/physics gnn/graph gnn/model bullet_ext)
-  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.h)
-  install(FILES ${headers} DESTINATION ${FASTCLOTH_INCLUDE_DIR}/${folder})
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${FASTCLOTH_INCLUDE_DIR}/${folder}
+          FILES_MATCHING PATTERN "*.h" PATTERN assets EXCLUDE PATTERN cmake EXCLUDE)
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/assets/ DESTINATION ${FASTCLOTH_ASSETS_DIR}
         PATTERN figures EXCLUDE)

@@ -1,8 +1,8 @@
 #include "demos/bullet_scenes/scene_energy.h"
 
 #include "bullet_ext/softBodyGarment.h"
-#include "gnn/physics/bending.h"
-#include "gnn/physics/strain.h"
+#include "gnn/physics/energy/bending.h"
+#include "gnn/physics/energy/strain.h"
 
 namespace cloth {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "data/garment.h"
+#include "data/core/garment.h"
 #include "demos/bullet_scenes/worlds/scenes.h"
 
 namespace cloth {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 #include "demos/bullet_scenes/scene_energy.h"
 #include "demos/bullet_scenes/scene_solver.h"
 #include "demos/bullet_scenes/worlds/scenes.h"
@@ -15,7 +15,7 @@ namespace cloth {
 /// How a scene is run.
 struct SceneRunSettings {
     std::string solver = "small";  ///< a name of SceneSolvers
-    int rate = 60;                ///< steps per second, 24 to 480
+    int rate = 60;                 ///< steps per second, 24 to 480
     double seconds = 10.0;
     int pictures_per_second = 0;  ///< 0: nothing is recorded
 };

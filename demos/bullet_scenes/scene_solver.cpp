@@ -3,7 +3,7 @@
 #include "demos/compare/arguments.h"
 #include "demos/compare/solver_factory.h"
 #include "gnn/model/learned_cloth.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth {
 

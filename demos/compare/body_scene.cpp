@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "collision/proximity.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
+#include "collision/proximity/proximity.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "demos/compare/arguments.h"
 
 namespace cloth {
@@ -62,8 +62,7 @@ void BodyScene::find_covered_skin() {
     const Faces& faces = *m_body->faces();
     for (Eigen::Index i = 0; i < rest.rows(); ++i)
         if (contacts.has(i)) m_covered.push_back(faces(contacts.face[static_cast<size_t>(i)], 0));
-    m_rest_offset = rest.colwise().mean().transpose() -
-                    middle_of_covered(boundary.obstacles[0].x0);
+    m_rest_offset = rest.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x0);
 }
 
 Vec3 BodyScene::middle_of_covered(const Points& skin) const {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "data/animated_body.h"
+#include "data/body/animated_body.h"
 #include "demos/compare/comparison_scene.h"
 
 namespace cloth {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bullet_ext/bodySegments.h"
-#include "collision/self_contact_settings.h"
-#include "data/boundary.h"
-#include "data/cloth_state.h"
+#include "collision/self/self_contact_settings.h"
+#include "data/core/boundary.h"
+#include "data/core/cloth_state.h"
 
 namespace cloth {
 

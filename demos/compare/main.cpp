@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "demos/compare/body_scene.h"
 #include "demos/compare/film.h"
 #include "demos/compare/machine.h"

@@ -1,7 +1,7 @@
 #include "demos/compare/references.h"
 
-#include "gnn/physics/implicit_stepper.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth {
 
@@ -42,7 +42,7 @@ static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int sub
 
 Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                             const ProgressFunction& progress) {
-    ImplicitStepper stepper(scene.garment());
+    NewtonStepper stepper(scene.garment());
     return extend(scene, stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
 }
 

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "demos/compare/base64.h"
 #include "demos/compare/report_plots.h"
 #include "demos/compare/report_table.h"

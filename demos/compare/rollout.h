@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/metrics.h"
+#include "collision/proximity/metrics.h"
 #include "demos/compare/references.h"
 #include "demos/compare/step_energies.h"
 #include "gnn/stepper.h"

@@ -5,15 +5,15 @@
 #include <optional>
 
 #include "bullet_ext/bulletClothStepper.h"
-#include "data/paths.h"
+#include "data/core/paths.h"
 #include "demos/compare/arguments.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/learned_stepper.h"
-#include "gnn/physics/guarded_stepper.h"
-#include "gnn/physics/implicit_stepper.h"
-#include "gnn/physics/quasi_newton_stepper.h"
-#include "gnn/physics/substepped_stepper.h"
-#include "gnn/physics/xpbd_stepper.h"
+#include "gnn/physics/stepper/guarded_stepper.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/substepped_stepper.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 
 namespace cloth {
 namespace {
@@ -70,11 +70,11 @@ Integrator take_integrator(std::string& name) {
 }
 
 std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& scene) {
-    ImplicitSettings settings;
+    NewtonStepperSettings settings;
     settings.potential.integrator = take_integrator(name);
     settings.potential.self_contact = scene.self_contact();
     if (name != "reference") settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
-    return std::make_unique<ImplicitStepper>(scene.garment(), settings);
+    return std::make_unique<NewtonStepper>(scene.garment(), settings);
 }
 
 std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {

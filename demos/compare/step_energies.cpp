@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "gnn/physics/guess.h"
-#include "gnn/physics/quasi_newton.h"
+#include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "collision/ridge_contacts.h"
-#include "gnn/physics/incremental_potential.h"
+#include "collision/proximity/ridge_contacts.h"
+#include "gnn/physics/energy/incremental_potential.h"
 
 namespace cloth {
 

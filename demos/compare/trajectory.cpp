@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "data/cloth_state.h"
+#include "data/core/cloth_state.h"
 
 namespace cloth {
 

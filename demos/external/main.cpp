@@ -9,24 +9,23 @@
 #include <cstdio>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
-#include "data/paths.h"
+#include "data/core/paths.h"
 #include "gnn/model/learned_cloth.h"
 
 int main() {
     const std::string file = cloth::asset_path("weights/small.safetensors");
     auto weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
-    btGnnSoftBodySolver solver([&](const cloth::Garment& garment) {
-        return cloth::make_learned_cloth(garment, weights);
-    });
+    btGnnSoftBodySolver solver(
+        [&](const cloth::Garment& garment) { return cloth::make_learned_cloth(garment, weights); });
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
     btDbvtBroadphase broadphase;
     btSequentialImpulseConstraintSolver rigidSolver;
     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
     world.getWorldInfo().m_gravity = {0, -9.81f, 0};
-    btSoftBody* sheet = btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), {-0.4f, 1, -0.4f},
-                                                       {0.4f, 1, -0.4f}, {-0.4f, 1, 0.4f},
-                                                       {0.4f, 1, 0.4f}, 11, 11, 1 + 2, true);
+    btSoftBody* sheet =
+        btSoftBodyHelpers::CreatePatch(world.getWorldInfo(), {-0.4f, 1, -0.4f}, {0.4f, 1, -0.4f},
+                                       {-0.4f, 1, 0.4f}, {0.4f, 1, 0.4f}, 11, 11, 1 + 2, true);
     world.addSoftBody(sheet);
     for (int step = 0; step < 30; ++step) world.stepSimulation(1.0f / 60, 0);
     const float height = sheet->m_nodes[10 * 11 + 5].m_x.y();

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <memory>
 
-#include "data/body.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
+#include "data/body/body.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "demos/hard_cases/case_scenes.h"
 
 namespace cloth {

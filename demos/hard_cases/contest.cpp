@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "demos/hard_cases/case_scenes.h"
 
 namespace cloth {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "collision/metrics.h"
-#include "collision/self_tangles.h"
-#include "gnn/physics/guarded_stepper.h"
+#include "collision/proximity/metrics.h"
+#include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/guarded_stepper.h"
 
 namespace cloth {
 namespace {

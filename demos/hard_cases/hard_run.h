@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "collision/proximity.h"
+#include "collision/proximity/proximity.h"
 #include "demos/hard_cases/hard_cases.h"
 #include "gnn/stepper.h"
 
@@ -18,7 +18,7 @@ struct HardRun {
     std::string failure;                             ///< in what way
     std::vector<double> ms, stretch_p99, rms_speed;  ///< one per frame
     std::vector<double> penetration_mm;              ///< deepest free vertex
-    std::vector<double> tangles;         ///< edges through faces, if the case has a bound on them
+    std::vector<double> tangles;     ///< edges through faces, if the case has a bound on them
     std::vector<double> surface_mm;  ///< deepest point, edge midpoints and face centres included
     double rest_jitter_mm = std::numeric_limits<double>::quiet_NaN();
     std::vector<Points> x;  ///< the garment at picture_frames(), as far as it got

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "data/errors.h"
-#include "data/motion.h"
+#include "data/body/motion.h"
+#include "data/core/errors.h"
 #include "demos/compare/body_scene.h"
 #include "demos/hard_cases/case_scenes.h"
 

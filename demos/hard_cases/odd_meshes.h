@@ -1,6 +1,6 @@
 #pragma once
 
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 
 /// Level meshes (y = 0, normal +y) that no careful tailor makes, but users have.
 namespace cloth {

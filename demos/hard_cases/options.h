@@ -6,8 +6,8 @@
 namespace cloth {
 
 struct HardCaseOptions {
-    std::vector<std::string> cases;     ///< empty: all, or none if there are motions
-    std::vector<std::string> motions;   ///< names, BVH files or folders of them: a case each
+    std::vector<std::string> cases;       ///< empty: all, or none if there are motions
+    std::vector<std::string> motions;     ///< names, BVH files or folders of them: a case each
     std::string garment = "tshirt_1000";  ///< of these cases
     bool limbs = true;  ///< in these cases cloth passes through limbs that pass through others
     std::vector<std::string> steppers;  ///< see default_hard_case_steppers()

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 #include "demos/hard_cases/case_scenes.h"
 
 namespace cloth {

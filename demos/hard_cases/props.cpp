@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 
 namespace cloth {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "data/boundary.h"
-#include "data/garment.h"
-#include "data/mesh.h"
+#include "data/core/boundary.h"
+#include "data/core/garment.h"
+#include "data/core/mesh.h"
 
 /// What the scenes of the hard cases are built of.
 namespace cloth {

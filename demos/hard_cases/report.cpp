@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "data/errors.h"
-#include "data/read_file.h"
+#include "data/core/errors.h"
+#include "data/core/read_file.h"
 #include "demos/compare/machine.h"
 #include "render/replaced_file.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
 

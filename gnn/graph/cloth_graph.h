@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "data/garment.h"
+#include "data/core/garment.h"
 
 namespace cloth {
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include "data/boundary.h"
-#include "data/cloth_state.h"
+#include "data/core/boundary.h"
+#include "data/core/cloth_state.h"
 #include "gnn/graph/cloth_graph.h"
 #include "gnn/graph/feature_layout.h"
-#include "gnn/physics/incremental_potential.h"
+#include "gnn/physics/energy/incremental_potential.h"
 
 namespace cloth {
 

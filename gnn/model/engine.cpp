@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "gnn/model/engine_workspace.h"
 
 // The vertices are cut into groups. Within a message step everything that a group writes belongs to

@@ -4,7 +4,7 @@
 
 #include "gnn/model/engine.h"
 #include "gnn/model/learned_stepper.h"
-#include "gnn/physics/guarded_stepper.h"
+#include "gnn/physics/stepper/guarded_stepper.h"
 
 namespace cloth {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "data/errors.h"
-#include "gnn/physics/guess.h"
-#include "gnn/physics/stopwatch.h"
+#include "data/core/errors.h"
+#include "gnn/physics/stepper/guess.h"
+#include "gnn/physics/stepper/stopwatch.h"
 
 namespace cloth {
 
@@ -94,7 +94,7 @@ void LearnedStepper::predict(const Boundary& boundary, double dt, const ClothSta
     const InertialStep* inertia = m_time.begin_step(state, m_contacts, contact_distance, dt);
     m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
     starting_guess(*m_garment, state, boundary, m_contacts, dt, contact_distance, m_guess);
-    m_potential.separate_layers(m_guess);
+    m_potential.separate_self_contact(m_guess);
     m_builder.build(state, boundary, m_potential, m_guess, m_features);
     report.times.features = watch.lap();
     m_predictor->predict(m_graph, m_features, m_output);

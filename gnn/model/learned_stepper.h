@@ -3,11 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "collision/resolve_surface.h"
-#include "collision/ridge_contacts.h"
+#include "collision/proximity/ridge_contacts.h"
+#include "collision/response/contact_projection.h"
 #include "gnn/model/predictor.h"
-#include "gnn/physics/layer_safety.h"
-#include "gnn/physics/quasi_newton.h"
+#include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/self_contact_projection.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
@@ -89,8 +89,8 @@ class LearnedStepper : public Stepper {
     ClothGraph m_graph;
     Proximity m_proximity;
     RidgeFinder m_ridges;
-    SurfaceResolver m_resolver;
-    LayerSafety m_layers;
+    ContactProjection m_resolver;
+    SelfContactProjection m_layers;
     IncrementalPotential m_potential;
     TimeIntegration m_time;
     QuasiNewton m_solver;

@@ -3,9 +3,9 @@
 // their own -m options. Everything is internal to the file and free of the standard library, so
 // that no function compiled for a newer processor can be picked by the linker for an older one.
 //
-// BLOCK x COLUMNS registers hold sums: 8 x 2 fill 16 of the 32 registers of AVX-512 and need 10 loads
-// for 16 multiply-adds, 6 x 2 fill 12 of the 16 of AVX2, 4 x 2 half of the 16 of SSE. A vector is one
-// register: GCC moves arrays of wider ones through memory, at a tenth of the speed.
+// BLOCK x COLUMNS registers hold sums: 8 x 2 fill 16 of the 32 registers of AVX-512 and need 10
+// loads for 16 multiply-adds, 6 x 2 fill 12 of the 16 of AVX2, 4 x 2 half of the 16 of SSE. A
+// vector is one register: GCC moves arrays of wider ones through memory, at a tenth of the speed.
 
 #if defined(__AVX512BF16__) || (defined(__AVX2__) && !defined(__AVX512F__))
 #include <immintrin.h>
@@ -186,9 +186,9 @@ CLOTH_INLINE void norm_statistics(int d, const float* y, float* mean, float* inv
 
 /// Buffers of one tile, cut from the caller's scratch: see scratch_floats().
 struct Tile {
-    float *a, *b, *y;        // (tile x D): activations; y is the third layer's output
-    float *mean, *inverse;   // (tile)
-    float *c, *e, *normed;   // (tile x D), backward only
+    float *a, *b, *y;       // (tile x D): activations; y is the third layer's output
+    float *mean, *inverse;  // (tile)
+    float *c, *e, *normed;  // (tile x D), backward only
     float* x[MessageBlockWeights::max_inputs];  // gathered inputs, backward only
 };
 
@@ -209,7 +209,8 @@ CLOTH_INLINE Tile make_tile(const MessageBlockWeights& w, float* scratch) {
     return tile;
 }
 
-/// Activations a (first layer), b (second) and y of rows [first, first + count), and y's statistics.
+/// Activations a (first layer), b (second) and y of rows [first, first + count), and y's
+/// statistics.
 CLOTH_INLINE void evaluate_tile(const MessageBlockWeights& w, const MessageBlockRows& rows,
                                 int first, int count, const Tile& tile) {
     const int d = w.width;
@@ -320,7 +321,8 @@ inline void product(int rows, int k, int n, const float* a, const float* b, floa
         int r = 0;
         for (; r + block <= rows; r += block)
             product_block<block, columns>(k, a + r * k, k, b + j, n, c + r * n + j, n);
-        for (; r < rows; ++r) product_block<1, columns>(k, a + r * k, k, b + j, n, c + r * n + j, n);
+        for (; r < rows; ++r)
+            product_block<1, columns>(k, a + r * k, k, b + j, n, c + r * n + j, n);
     }
     for (; j < n; j += lanes) {
         int r = 0;

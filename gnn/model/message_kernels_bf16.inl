@@ -1,6 +1,6 @@
-// The forward pass on bfloat16, included by message_kernels.inl. A product works on pairs of inputs:
-// an activation pair is one 32-bit number that is broadcast, a row of a panel holds the pairs of its
-// outputs. Without AVX512-BF16 the same numbers are widened and multiplied in float32.
+// The forward pass on bfloat16, included by message_kernels.inl. A product works on pairs of
+// inputs: an activation pair is one 32-bit number that is broadcast, a row of a panel holds the
+// pairs of its outputs. Without AVX512-BF16 the same numbers are widened and multiplied in float32.
 //
 // Rows are rounded once when they are gathered; each layer writes what the next one reads.
 
@@ -40,9 +40,8 @@ template <int Columns>
 CLOTH_INLINE void store_row(const Lanes (&values)[Columns], Bfloat16* to) {
 #if defined(__AVX512BF16__)
     if (Columns == 2) {
-        *reinterpret_cast<Pairs*>(to) = reinterpret_cast<Pairs>(
-            _mm512_cvtne2ps_pbh(reinterpret_cast<__m512>(values[Columns - 1]),
-                                reinterpret_cast<__m512>(values[0])));
+        *reinterpret_cast<Pairs*>(to) = reinterpret_cast<Pairs>(_mm512_cvtne2ps_pbh(
+            reinterpret_cast<__m512>(values[Columns - 1]), reinterpret_cast<__m512>(values[0])));
         return;
     }
 #endif
@@ -107,8 +106,7 @@ CLOTH_INLINE void rounded_block(const RoundedLayer& layer, int first, int column
         add_input<Block, Columns>(layer.input[k], first, column, d, sum);
     for (int r = 0; r < Block; ++r) {
         if (layer.with_relu)
-            for (int j = 0; j < Columns; ++j)
-                sum[r][j] = sum[r][j] > 0.0f ? sum[r][j] : Lanes{};
+            for (int j = 0; j < Columns; ++j) sum[r][j] = sum[r][j] > 0.0f ? sum[r][j] : Lanes{};
         store_row<Columns>(sum[r], y + static_cast<long>(first + r) * d + column);
     }
 }
@@ -147,10 +145,10 @@ CLOTH_INLINE void gather_rounded(const float* x, const int* index, int rows, int
 
 /// Buffers of one tile, cut from the caller's scratch.
 struct RoundedTile {
-    Bfloat16 *a, *b;                                // (tile x D): activations
-    float *y, *inverse;                             // third layer (tile x D), 1 / deviation (tile)
-    float* bias;                                    // b3 less its mean (D)
-    Bfloat16* x[MessageBlockWeights::max_inputs];   // gathered inputs (tile x in)
+    Bfloat16 *a, *b;                               // (tile x D): activations
+    float *y, *inverse;                            // third layer (tile x D), 1 / deviation (tile)
+    float* bias;                                   // b3 less its mean (D)
+    Bfloat16* x[MessageBlockWeights::max_inputs];  // gathered inputs (tile x in)
 };
 
 CLOTH_INLINE RoundedTile make_rounded_tile(const MessageBlockWeights& w, int d, float* scratch) {

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

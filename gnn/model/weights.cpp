@@ -7,9 +7,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "data/errors.h"
-#include "data/printable.h"
-#include "data/read_file.h"
+#include "data/core/errors.h"
+#include "data/core/printable.h"
+#include "data/core/read_file.h"
 
 namespace cloth {
 

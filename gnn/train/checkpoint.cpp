@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <sstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "gnn/train/trainer.h"
 
 namespace cloth {

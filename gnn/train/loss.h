@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <string>
 
-#include "gnn/physics/incremental_potential.h"
+#include "gnn/physics/energy/incremental_potential.h"
 
 namespace cloth {
 

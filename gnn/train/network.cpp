@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

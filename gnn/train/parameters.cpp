@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 

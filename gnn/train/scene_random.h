@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <random>
 
-#include "data/fabric.h"
-#include "data/types.h"
+#include "data/core/fabric.h"
+#include "data/core/types.h"
 
 namespace cloth {
 

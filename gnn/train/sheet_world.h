@@ -1,6 +1,6 @@
 #pragma once
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 #include "gnn/train/scene_random.h"
 #include "gnn/train/training_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "gnn/train/network.h"
 
 namespace cloth {

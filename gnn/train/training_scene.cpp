@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "gnn/physics/guess.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <string>
 
-#include "collision/proximity.h"
+#include "collision/proximity/proximity.h"
 #include "gnn/graph/features.h"
-#include "gnn/physics/quasi_newton.h"
+#include "gnn/physics/solver/quasi_newton.h"
 
 namespace cloth {
 

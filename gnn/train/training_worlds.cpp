@@ -4,11 +4,11 @@
 #include <iostream>
 #include <utility>
 
-#include "data/animated_body.h"
-#include "data/body_shapes.h"
-#include "data/errors.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
+#include "data/body/animated_body.h"
+#include "data/body/body_shapes.h"
+#include "data/core/errors.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "gnn/train/sheet_world.h"
 #include "gnn/train/tshirt_world.h"
 

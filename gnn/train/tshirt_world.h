@@ -1,6 +1,6 @@
 #pragma once
 
-#include "data/animated_body.h"
+#include "data/body/animated_body.h"
 #include "gnn/train/scene_random.h"
 #include "gnn/train/training_scene.h"
 

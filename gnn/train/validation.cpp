@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "data/paths.h"
+#include "data/core/paths.h"
 
 namespace cloth {
 

@@ -11,12 +11,12 @@
 #include <cmath>
 #include <random>
 
-#include "collision/brute_force.h"
-#include "collision/proximity.h"
-#include "collision/resolve.h"
-#include "data/errors.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
+#include "collision/proximity/brute_force.h"
+#include "collision/proximity/proximity.h"
+#include "collision/response/resolve.h"
+#include "data/core/errors.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "tests/collision/test_meshes.h"
 
 namespace cloth {

@@ -19,7 +19,7 @@
 #include <memory>
 #include <random>
 
-#include "data/paths.h"
+#include "data/core/paths.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/learned_stepper.h"
 #include "gnn/model/message_block.h"

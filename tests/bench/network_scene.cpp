@@ -2,13 +2,13 @@
 
 #include <cmath>
 
-#include "collision/proximity.h"
-#include "data/animated_body.h"
-#include "data/errors.h"
-#include "data/mesh_io.h"
-#include "data/paths.h"
-#include "gnn/physics/guess.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "collision/proximity/proximity.h"
+#include "data/body/animated_body.h"
+#include "data/core/errors.h"
+#include "data/core/paths.h"
+#include "data/files/mesh_io.h"
+#include "gnn/physics/stepper/guess.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth::bench {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <map>
 
-#include "collision/self_crossings.h"
-#include "collision/self_tangles.h"
-#include "gnn/physics/quasi_newton_stepper.h"
-#include "tests/gnn/physics/self_contact_scenes.h"
+#include "collision/self/self_crossings.h"
+#include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
 namespace cloth {
 namespace {

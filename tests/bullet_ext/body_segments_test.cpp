@@ -2,7 +2,7 @@
 
 #include "bullet_ext/bodySegments.h"
 #include "bullet_ext/bulletShapes.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/bullet_ext/test_meshes.h"
 
 using namespace cloth;

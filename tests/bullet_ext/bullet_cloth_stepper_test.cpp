@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bullet_ext/bulletClothStepper.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/bullet_ext/test_meshes.h"
 
 using namespace cloth;

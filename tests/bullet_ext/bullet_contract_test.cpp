@@ -3,7 +3,7 @@
 #include "bullet_ext/bulletClothStepper.h"
 #include "tests/gnn/stepper_contract.h"
 
-namespace cloth::testing {
+namespace cloth::test {
 namespace {
 
 StepperCase bullet(const std::string& name, const BulletClothSettings& settings) {
@@ -27,4 +27,4 @@ INSTANTIATE_TEST_SUITE_P(Bullet, StepperContract,
                          case_name);
 
 }  // namespace
-}  // namespace cloth::testing
+}  // namespace cloth::test

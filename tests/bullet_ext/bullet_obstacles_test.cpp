@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "bullet_ext/bulletObstacles.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
 
 using namespace cloth;

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "bullet_ext/bulletShapes.h"
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 
 using namespace cloth;
 

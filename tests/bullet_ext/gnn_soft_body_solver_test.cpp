@@ -6,7 +6,7 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/test_meshes.h"
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth::test {
 

@@ -2,7 +2,7 @@
 
 #include "bullet_ext/garmentSoftBody.h"
 #include "bullet_ext/softBodyGarment.h"
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
 
 using namespace cloth;

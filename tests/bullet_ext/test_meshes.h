@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "data/mesh.h"
+#include "data/core/mesh.h"
 
 namespace cloth::test {
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "data/boundary.h"
-#include "data/mesh.h"
+#include "data/core/boundary.h"
+#include "data/core/mesh.h"
 
 namespace cloth::test {
 

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/fuzz/file_mutations.h"
 #include "tests/fuzz/memory_meter.h"
 

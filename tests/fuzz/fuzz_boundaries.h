@@ -1,7 +1,7 @@
 #pragma once
 
-#include "data/boundary.h"
-#include "data/cloth_state.h"
+#include "data/core/boundary.h"
+#include "data/core/cloth_state.h"
 #include "tests/fuzz/fuzz_random.h"
 
 namespace cloth::fuzz {

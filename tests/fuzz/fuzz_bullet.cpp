@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/fuzz/fuzz_meshes.h"
 
 namespace cloth::fuzz {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "data/garment.h"
+#include "data/core/garment.h"
 #include "tests/fuzz/fuzz_random.h"
 
 namespace cloth::fuzz {

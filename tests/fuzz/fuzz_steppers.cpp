@@ -5,9 +5,9 @@
 #include <exception>
 
 #include "gnn/model/learned_cloth.h"
-#include "gnn/physics/implicit_stepper.h"
-#include "gnn/physics/quasi_newton_stepper.h"
-#include "gnn/physics/xpbd_stepper.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/model/random_weights.h"
 
 namespace cloth::fuzz {
@@ -26,10 +26,10 @@ std::unique_ptr<Stepper> xpbd(const Garment& garment) {
 }
 
 std::unique_ptr<Stepper> reference(const Garment& garment) {
-    ImplicitSettings settings;
+    NewtonStepperSettings settings;
     settings.max_iterations = 2;
     settings.contact_updates = 1;
-    return std::make_unique<ImplicitStepper>(garment, settings);
+    return std::make_unique<NewtonStepper>(garment, settings);
 }
 
 std::unique_ptr<Stepper> guarded(const Garment& garment) {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/collision/test_meshes.h"
 #include "tests/fuzz/fuzz_meshes.h"
 #include "tests/fuzz/fuzz_steppers.h"

@@ -7,12 +7,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "data/body_shapes.h"
-#include "data/character_rig.h"
-#include "data/mesh_io.h"
-#include "data/motion.h"
-#include "data/rig_recipe.h"
-#include "data/tshirt.h"
+#include "data/authoring/tshirt.h"
+#include "data/body/body_shapes.h"
+#include "data/body/character_rig.h"
+#include "data/body/motion.h"
+#include "data/body/rig_recipe.h"
+#include "data/files/mesh_io.h"
 #include "gnn/model/weights.h"
 #include "tests/fuzz/file_fuzzing.h"
 #include "tests/fuzz/sample_files.h"

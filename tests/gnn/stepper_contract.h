@@ -11,10 +11,10 @@
 #include <numeric>
 #include <string>
 
-#include "collision/metrics.h"
-#include "collision/proximity.h"
+#include "collision/proximity/metrics.h"
+#include "collision/proximity/proximity.h"
 #include "gnn/stepper.h"
-#include "tests/gnn/physics/solver_scenes.h"
+#include "tests/gnn/physics/solver/solver_scenes.h"
 
 /// What every Stepper promises, as tests that any test program can instantiate for its steppers:
 ///
@@ -23,7 +23,7 @@
 /// A stepper that does not promise one of the optional things names it in `exceptions` with the
 /// reason, which the skipped test then says. What is not in `Promise` is promised by all: pins on
 /// targets, finite output, failed steps that change nothing, equal bits.
-namespace cloth::testing {
+namespace cloth::test {
 
 enum class Promise {
     free_fall,  ///< a free garment falls as backward Euler's closed form says
@@ -352,4 +352,4 @@ TEST_P(StepperContract, ReportsWhatHappened) {
     EXPECT_GT(times.total(), 0.0);
 }
 
-}  // namespace cloth::testing
+}  // namespace cloth::test

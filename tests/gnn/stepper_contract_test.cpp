@@ -1,11 +1,11 @@
 #include "tests/gnn/stepper_contract.h"
 
-#include "gnn/physics/implicit_stepper.h"
-#include "gnn/physics/quasi_newton_stepper.h"
-#include "gnn/physics/substepped_stepper.h"
-#include "gnn/physics/xpbd_stepper.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/substepped_stepper.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 
-namespace cloth::testing {
+namespace cloth::test {
 namespace {
 
 StepperCase quasi_newton(int iterations) {
@@ -31,7 +31,7 @@ StepperCase bdf2() {
 
 StepperCase reference() {
     const auto make = [](const Garment& garment) {
-        return std::make_unique<ImplicitStepper>(garment);
+        return std::make_unique<NewtonStepper>(garment);
     };
     return {"Reference", make, 1e-5, {}};
 }
@@ -68,4 +68,4 @@ INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
                          case_name);
 
 }  // namespace
-}  // namespace cloth::testing
+}  // namespace cloth::test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "render/osmesa_renderer.h"
 #include "tests/render/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <sstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "render/label_placement.h"
 
 namespace cloth::test {

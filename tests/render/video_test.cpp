@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "tests/render/temporary_folder.h"
 #include "tests/render/video_decoder.h"
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "scenes.h"
+#include "demos/bullet_scenes/worlds/scenes.h"
 
 namespace {
 

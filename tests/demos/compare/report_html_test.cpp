@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "demos/compare/base64.h"
 #include "demos/compare/report_table.h"
 #include "render/image.h"

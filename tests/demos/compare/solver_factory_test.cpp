@@ -12,7 +12,7 @@ namespace {
 class FreeSheet : public ComparisonScene {
  public:
     FreeSheet()
-        : ComparisonScene(Garment("sheet", cloth::testing::sheet(4, 0.1), Fabric::soft_cotton())) {}
+        : ComparisonScene(Garment("sheet", cloth::test::sheet(4, 0.1), Fabric::soft_cotton())) {}
 
     Boundary boundary(double, double) const override {
         Boundary boundary;

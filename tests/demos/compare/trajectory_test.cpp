@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 #include "demos/compare/statistics.h"
 
 using namespace cloth;

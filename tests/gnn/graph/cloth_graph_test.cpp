@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 
 namespace cloth {
 namespace {

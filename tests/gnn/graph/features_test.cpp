@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "data/sheet.h"
-#include "gnn/physics/guess.h"
+#include "data/authoring/sheet.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
 namespace {

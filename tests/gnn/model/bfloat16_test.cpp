@@ -7,7 +7,7 @@
 
 #include <limits>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 #include "gnn/model/engine.h"
 #include "tests/gnn/model/random_block.h"
 #include "tests/gnn/model/random_weights.h"

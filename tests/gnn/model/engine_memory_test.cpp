@@ -5,7 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
 #include "gnn/model/engine.h"
 #include "tests/gnn/model/random_weights.h"
 

@@ -9,10 +9,10 @@
 #include <ostream>
 #include <string>
 
-#include "data/paths.h"
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
+#include "data/core/paths.h"
 #include "gnn/model/learned_cloth.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth {
 namespace {

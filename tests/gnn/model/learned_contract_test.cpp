@@ -1,10 +1,10 @@
 // The contract of all steppers, kept by the learned ones: the engine with the committed weights.
 
-#include "data/paths.h"
+#include "data/core/paths.h"
 #include "gnn/model/learned_cloth.h"
 #include "tests/gnn/stepper_contract.h"
 
-namespace cloth::testing {
+namespace cloth::test {
 namespace {
 
 StepperCase learned(const std::string& variant, int refine) {
@@ -46,4 +46,4 @@ INSTANTIATE_TEST_SUITE_P(Learned, StepperContract,
                          case_name);
 
 }  // namespace
-}  // namespace cloth::testing
+}  // namespace cloth::test

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "data/errors.h"
-#include "data/sheet.h"
-#include "gnn/physics/guess.h"
+#include "data/authoring/sheet.h"
+#include "data/core/errors.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
 namespace {

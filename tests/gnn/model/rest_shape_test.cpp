@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "data/paths.h"
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
+#include "data/core/paths.h"
 #include "gnn/model/learned_cloth.h"
-#include "gnn/physics/implicit_stepper.h"
-#include "gnn/physics/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
 
 namespace cloth {
 namespace {
@@ -63,7 +63,7 @@ double rms_mm(const Points& a, const Points& b) {
 
 TEST(RestShape, SolverAndLearnedClothHangWhereTheReferenceDoes) {
     const Hanging scene;
-    ImplicitStepper reference(scene.garment);
+    NewtonStepper reference(scene.garment);
     const Points expected = scene.at_rest(reference);
     ASSERT_GT(rms_mm(expected, scene.garment.rest().vertices), 5.0) << "it does not hang at all";
     QuasiNewtonStepper solver(scene.garment, {});

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "data/errors.h"
+#include "data/core/errors.h"
 
 namespace cloth {
 namespace {

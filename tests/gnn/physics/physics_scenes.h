@@ -7,12 +7,12 @@
 #include <random>
 #include <string>
 
-#include "collision/proximity.h"
-#include "data/cloth_state.h"
-#include "data/garment.h"
+#include "collision/proximity/proximity.h"
+#include "data/core/cloth_state.h"
+#include "data/core/garment.h"
 
 /// Small scenes and the finite-difference oracle shared by the tests of gnn/physics.
-namespace cloth::testing {
+namespace cloth::test {
 
 /// A horizontal square sheet (normal +y) of n x n vertices; `irregular` moves the inner vertices in
 /// the plane by that fraction of the spacing.
@@ -124,4 +124,4 @@ inline void expect_gradient(const Energy& energy, const Gradient& gradient, cons
     expect_close(analytic, numeric_gradient(energy, x, h), tolerance);
 }
 
-}  // namespace cloth::testing
+}  // namespace cloth::test

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "collision/proximity.h"
-#include "data/sheet.h"
-#include "gnn/physics/guess.h"
+#include "collision/proximity/proximity.h"
+#include "data/authoring/sheet.h"
+#include "gnn/physics/stepper/guess.h"
 #include "gnn/train/network.h"
 #include "gnn/train/torch_predictor.h"
 

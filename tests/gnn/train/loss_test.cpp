@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "data/errors.h"
-#include "data/sheet.h"
-#include "gnn/physics/guess.h"
-#include "gnn/physics/quasi_newton.h"
+#include "data/authoring/sheet.h"
+#include "data/core/errors.h"
+#include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "data/errors.h"
-#include "data/sheet.h"
+#include "data/authoring/sheet.h"
+#include "data/core/errors.h"
 #include "gnn/train/message_op.h"
 #include "gnn/train/torch_predictor.h"
 

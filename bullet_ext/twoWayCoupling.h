@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "bullet_ext/bulletObstacles.h"
+#include "gnn/stepper.h"
+
+class btRigidBody;
+class btSoftBody;
+
+namespace cloth {
+
+/// One step of a Stepper, as reactions need it.
+struct ClothStep {
+    const Garment& garment;
+    const Stepper& stepper;
+    const Boundary& boundary;
+    const ClothState& from;
+    ClothState& to;                      ///< velocities of nodes that rigid bodies hold are changed
+    double length;                       ///< (s)
+    const std::vector<NearSolid>& near;  ///< what the cloth may touch
+};
+
+/// Gives dynamic rigid bodies the impulses that contacts and anchors took from them.
+///
+/// What a step changed in a node's momentum, less gravity, node forces and the fabric's own forces,
+/// came from outside: from what the node is anchored to or touches (itself, or the middle of an
+/// edge or face of it). Other nodes have such a rest where the stepper did not converge; it is that
+/// of the nearest node that is held. Cloth that is pinched between a body and another solid hands
+/// nothing on: the two touch each other through it, and Bullet's own contact pushes them apart.
+/// What contacts give keeps within Coulomb's cone: it pushes, and rubs by no more than the friction
+/// of both. Momentum is counted in the masses that the cloth moves with: the soft body's mass,
+/// spread over its nodes like the garment's, which is by area. Where nothing but dynamic bodies
+/// supports the cloth, it is conserved to rounding. Counted in node masses of another spread, as
+/// setTotalMass() without `fromfaces` makes them, it would come and go as the cloth waves.
+///
+/// The stepper took the body's motion as given, however light the body is. So body and cloth are
+/// brought to a common motion afterwards, as in an inelastic collision: with the impulse J that the
+/// nodes took, both get the change of velocity d,
+///
+///     (M + sum w_i m_i J_i' J_i) d = J,   v_i += w_i J_i d
+///
+/// M is the body's mass matrix (6 x 6), m_i a node's mass, J_i takes the body's velocity to that of
+/// node i. Nodes that the body holds have w = 1. Cloth that an anchor pulls follows as far as a
+/// stretch wave runs in the cloth step: w falls from 1 at the anchor, whose motion counts, to 0
+/// there. Without that a light body on stiff cloth would be thrown about.
+///
+/// Steppers without internal_forces(), such as XPBD, push what touches the cloth; what is anchored
+/// to it feels nothing: the balance of a single node would be all noise.
+class TwoWayCoupling {
+ public:
+    explicit TwoWayCoupling(btSoftBody& body) : m_body(body) {}
+
+    /// Finds the impulses of a cloth step.
+    void collect(const ClothStep& step);
+    /// Hands over the part that belongs to a world step of h seconds. Bodies that are neither
+    /// anchored to nor near the cloth any more get nothing.
+    void apply(double h, const std::vector<NearSolid>& near);
+
+    /// Impulse given to rigid bodies in the last apply() (N s).
+    const Vec3& lastImpulse() const { return m_last_impulse; }
+
+ private:
+    using Vector6 = Eigen::Matrix<double, 6, 1>;  ///< along the axes, then about the centre
+    using Matrix6 = Eigen::Matrix<double, 6, 6>;
+    /// Cloth that follows the body: at a place of it (m, from its centre), with a part of its mass.
+    struct Follower {
+        int node;
+        Vec3 arm;
+        double weight;
+    };
+    /// Nodes that touch one side of a body: single impulses are noisy and cancel within it.
+    struct Side {
+        Vec3 impulse = Vec3::Zero();  ///< on the body (N s)
+        Vec3 normal = Vec3::Zero();   ///< sum over the nodes, away from the body
+        Vec3 arm = Vec3::Zero();      ///< sum over the nodes, from the body's centre (m)
+        int count = 0;
+    };
+    struct Account {
+        std::array<Side, 6> sides;          ///< by the direction that the normal is nearest to
+        Vector6 taken = Vector6::Zero();    ///< impulse of this cloth step (N s, N m s)
+        Vector6 planned = Vector6::Zero();  ///< what the rest of the present cloth step hands over
+        double plan_time = 0.0;             ///< that rest (s)
+        std::vector<int> nodes;             ///< that touch the body or are anchored to it
+        double meeting = 0.0;               ///< fastest that body and nodes met (m/s)
+        bool anchored = false;
+    };
+
+    double massOf(const ClothStep& step, int node) const;
+    void forgetAbsent(const std::vector<NearSolid>& near);
+    void findHolders(const ClothStep& step);
+    Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
+    void chargeSide(const ClothStep& step, int node, const Vec3& impulse, Account& account) const;
+    void closeSides(const btRigidBody& body, bool all, Account& account) const;
+    bool isPinched(const ClothStep& step, int node, const NearSolid& holder) const;
+    void releasePinching(const ClothStep& step);
+    void findImpulses(const ClothStep& step);
+    void charge(const ClothStep& step, int node);
+    void findOwners(const ClothStep& step);
+    std::vector<Follower> followersOf(const ClothStep& step, const btRigidBody& body,
+                                      const Account& account) const;
+    void settle(const ClothStep& step, const btRigidBody& body, Account& account);
+
+    btSoftBody& m_body;
+    double m_mass_ratio = 1.0;  ///< of this cloth step, massRatio()
+    std::map<btRigidBody*, Account> m_accounts;
+    std::vector<btRigidBody*> m_holder;          ///< |V|: null: nobody that could be pushed
+    std::vector<char> m_held;                    ///< |V|: by anything at all
+    std::vector<std::vector<int>> m_neighbours;  ///< |V|
+    std::vector<int> m_owner, m_queue;           ///< |V|: the held node a node belongs to, or -1
+    std::vector<double> m_distance;              ///< |V| (m): to the holder
+    Points m_touch;     ///< |V| x 3 (m): where the node, or its edge or face, touches
+    Points m_impulses;  ///< |V| x 3 (N s): from outside
+    Points m_internal;  ///< |V| x 3 (N)
+    bool m_internal_known = false;
+    Vec3 m_last_impulse = Vec3::Zero();
+};
+
+}  // namespace cloth

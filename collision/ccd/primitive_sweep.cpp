@@ -1,0 +1,30 @@
+#include "collision/ccd/primitive_sweep.h"
+
+namespace cloth {
+
+constexpr double touching = 1e-6;  // m
+constexpr int max_advances = 200;  // a path that creeps along the surface does not go through it
+
+static bool advance(const Obstacle& primitive, const Vec3& from, const Vec3& to,
+                    PrimitiveHit& hit) {
+    hit = closest_on_primitive(primitive, from);
+    const double start = hit.distance, length = (to - from).norm();
+    if (start > length) return false;
+    double way = 0.0;
+    for (int k = 0; k < max_advances && hit.distance > touching; ++k) {
+        way += hit.distance;
+        if (way > length) return false;
+        hit = closest_on_primitive(primitive, from + (way / length) * (to - from));
+    }
+    const bool met = hit.distance <= touching;
+    hit.distance = start;
+    return met;
+}
+
+PrimitivePath follow_path(const Obstacle& primitive, const Vec3& p0, const Vec3& p1) {
+    PrimitivePath path;
+    path.meets = advance(primitive, p0, p1, path.in) && advance(primitive, p1, p0, path.out);
+    return path;
+}
+
+}  // namespace cloth

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "collision/geometry/primitives.h"
+
+namespace cloth {
+
+/// Where a path meets a primitive first and last, in the primitive's frame.
+struct PrimitivePath {
+    bool meets = false;
+    PrimitiveHit in, out;  ///< `distance` is that of the path's start and end
+};
+
+/// Follows the straight path from p0 to p1 (m, in the primitive's frame) by conservative
+/// advancement: from either end it goes on by the distance to the surface until that is below a
+/// micrometre. An end that is inside is its own way in, or out.
+PrimitivePath follow_path(const Obstacle& primitive, const Vec3& p0, const Vec3& p1);
+
+}  // namespace cloth

@@ -1,0 +1,247 @@
+#include "collision/ccd/tunnelling.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+
+#include "collision/ccd/fcl_sweep.h"
+#include "collision/ccd/primitive_sweep.h"
+#include "collision/geometry/faces_in_range.h"
+#include "collision/geometry/gather_in_order.h"
+#include "collision/geometry/triangle.h"
+
+namespace cloth {
+namespace {
+
+constexpr double shallow = 5e-3;  // m: what starts or ends less deep is near where it went in
+constexpr double least_thickness = 5e-3;  // m: thinner solids are not reported
+// Way in each coordinate that a point makes at least, relative to what it goes through.
+constexpr float least_motion = static_cast<float>(0.577 * least_thickness);
+constexpr int points_per_part = 256;  // that a thread takes at once
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const Points& x, const Faces& faces, int face) {
+    return {x.row(faces(face, 0)), x.row(faces(face, 1)), x.row(faces(face, 2))};
+}
+
+/// A place on an obstacle's surface, as it is at t + dt.
+struct Place {
+    bool known = false;
+    double time = 0.0;  ///< when it was crossed, 0 to 1
+    int face = -1;
+    Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
+};
+
+/// Where a point that moves from p0 to p1 crosses a face, and whether to the outside.
+bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corners& end, int face,
+                Place& place, bool& outwards) {
+    double time = 0.0;
+    Vec3 normal;
+    if (!first_touch(p0, p1, start, end, time) || !triangle_normal(end[0], end[1], end[2], normal))
+        return false;
+    Corners at;
+    for (size_t k = 0; k < 3; ++k) at[k] = (1.0 - time) * start[k] + time * end[k];
+    const Vec3 weight =
+        closest_on_triangle((1.0 - time) * p0 + time * p1, at[0], at[1], at[2]).barycentric;
+    Vec3 point = Vec3::Zero(), motion = p1 - p0;
+    for (int k = 0; k < 3; ++k) {
+        const auto corner = static_cast<size_t>(k);
+        point += weight[k] * end[corner];
+        motion -= weight[k] * (end[corner] - start[corner]);
+    }
+    outwards = (at[1] - at[0]).cross(at[2] - at[0]).dot(motion) > 0.0;
+    place = {true, time, face, point, normal};
+    return true;
+}
+
+/// -1: none, such as of a place that is not on a face.
+int limb_of(const std::vector<std::uint8_t>* limbs, int face) {
+    return face >= 0 && limbs ? (*limbs)[static_cast<size_t>(face)] : -1;
+}
+
+/// Equal times, as at a shared edge, go to the lowest face.
+bool is_before(const Place& a, const Place& b) {
+    return a.time < b.time || (a.time == b.time && a.face < b.face);
+}
+
+}  // namespace
+
+/// The tree of a mesh, found again by its faces.
+struct TunnellingDetector::MovingMesh {
+    std::shared_ptr<const Faces> faces;  ///< held, so that the pointer stays a key
+    Eigen::Index vertex_count;
+    std::unique_ptr<MotionTree> tree;  ///< null: the faces are unusable
+    bool used;
+};
+
+/// A point's first way into an obstacle and its last way out of it.
+struct TunnellingDetector::Crossing {
+    int point = -1;
+    Place in, out;
+};
+
+TunnellingDetector::TunnellingDetector(const Garment& garment)
+    : m_samples(garment), m_pinned(garment.is_pinned()) {
+    m_proximity.query(garment.rest().vertices, Boundary(),
+                      m_contacts);  // gives the rows their size
+}
+
+TunnellingDetector::~TunnellingDetector() = default;
+
+double TunnellingDetector::thinnest() const {
+    std::map<std::array<int, 2>, double> solids;
+    for (const Tunnelling& solid : m_found) {
+        double& thickness = solids[{solid.obstacle, solid.limb}];
+        thickness = std::max(thickness, solid.thickness);
+    }
+    double thinnest = std::numeric_limits<double>::infinity();
+    for (const auto& [solid, thickness] : solids) thinnest = std::min(thinnest, thickness);
+    return thinnest;
+}
+
+TunnellingDetector::MovingMesh& TunnellingDetector::moving(const Obstacle& mesh) {
+    for (const auto& known : m_meshes)
+        if (known->faces == mesh.faces && known->vertex_count == mesh.x0.rows()) return *known;
+    std::unique_ptr<MotionTree> tree;
+    if (faces_in_range(*mesh.faces, mesh.x0.rows()))
+        tree = std::make_unique<MotionTree>(mesh.x0, *mesh.faces);
+    m_meshes.push_back(std::make_unique<MovingMesh>(
+        MovingMesh{mesh.faces, mesh.x0.rows(), std::move(tree), false}));
+    return *m_meshes.back();
+}
+
+/// Where a point that moves from p0 to p1 crosses the faces of a mesh.
+TunnellingDetector::Crossing TunnellingDetector::cross(const Obstacle& mesh, const MotionTree& tree,
+                                                       const Vec3& p0, const Vec3& p1,
+                                                       LimbSet ignored, std::vector<int>& stack) {
+    Crossing crossing;
+    const MotionTree::Box box = tree.box_of(p0, p1 - p0);
+    tree.for_each_met(box, least_motion, stack, [&](int face) {
+        if (ignored != 0 && ((ignored >> (*mesh.limbs)[static_cast<size_t>(face)]) & 1u) != 0)
+            return;
+        Place place;
+        bool outwards = false;
+        if (!cross_face(p0, p1, corners_of(mesh.x0, *mesh.faces, face),
+                        corners_of(mesh.x1, *mesh.faces, face), face, place, outwards))
+            return;
+        Place& kept = outwards ? crossing.out : crossing.in;
+        if (!kept.known || is_before(place, kept) != outwards) kept = place;
+    });
+    // A way out before the way in is that of a point which started inside, and ended there.
+    if (crossing.in.known && crossing.out.known && is_before(crossing.out, crossing.in))
+        crossing.out = {};
+    return crossing;
+}
+
+/// Ways in of points that start inside (end: start), or ways out of those that end inside, where
+/// they are nearest to the surface.
+void TunnellingDetector::complete(const Boundary& boundary, int obstacle, const Points& x,
+                                  StepEnd end) {
+    const bool start = end == StepEnd::start;
+    m_rows.clear();
+    for (const Crossing& crossing : m_crossings)
+        if (!(start ? crossing.in : crossing.out).known) m_rows.push_back(crossing.point);
+    if (m_rows.empty()) return;
+    m_proximity.query_rows(x, m_rows, boundary, m_contacts, end);
+    for (Crossing& crossing : m_crossings) {
+        Place& place = start ? crossing.in : crossing.out;
+        if (place.known) continue;
+        const int i = crossing.point;
+        const bool deep = m_contacts.obstacle[static_cast<size_t>(i)] != obstacle ||
+                          m_contacts.distance[i] < -shallow;
+        if (!deep)
+            place = {true, start ? 0.0 : 1.0, m_contacts.face[static_cast<size_t>(i)],
+                     m_contacts.point1.row(i), m_contacts.normal1.row(i)};
+        else if (!start)  // it is in there: as if through
+            place = {true, 1.0, -1, x.row(i), -crossing.in.normal};
+    }
+}
+
+void TunnellingDetector::report(const Crossing& crossing, int obstacle,
+                                const std::vector<std::uint8_t>* limbs) {
+    const Place& in = crossing.in;
+    const Place& out = crossing.out;
+    if (!in.known || !out.known || !(in.normal.dot(out.normal) < 0.0)) return;
+    const int limb = limb_of(limbs, in.face), out_limb = limb_of(limbs, out.face);
+    if (limb != out_limb && out_limb >= 0) return;
+    const double thickness = (in.point - out.point).norm();
+    if (thickness >= least_thickness)
+        m_found.push_back({crossing.point, obstacle, limb, thickness});
+}
+
+void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0,
+                                      const Points& x1, int threads) {
+    const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
+    if (!mesh.faces || mesh.x0.rows() != mesh.x1.rows()) return;
+    MovingMesh& body = moving(mesh);
+    body.used = true;
+    if (!body.tree || !mesh.x0.allFinite() || !mesh.x1.allFinite()) return;
+    m_motion = mesh.x1 - mesh.x0;
+    body.tree->refit(mesh.x0, m_motion);
+    const int count = static_cast<int>(x0.rows());
+    const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+    const auto find_part = [&](int part, std::vector<Crossing>& out) {
+        std::vector<int> stack;
+        const int end = std::min(count, (part + 1) * points_per_part);
+        for (int i = part * points_per_part; i < end; ++i) {
+            if (m_pinned[static_cast<size_t>(i)]) continue;
+            const LimbSet ignored = limbs ? ignored_limbs(boundary, i) : 0;
+            Crossing crossing = cross(mesh, *body.tree, x0.row(i), x1.row(i), ignored, stack);
+            if (!crossing.in.known && !crossing.out.known) continue;
+            crossing.point = i;
+            out.push_back(crossing);
+        }
+    };
+    gather_in_order((count + points_per_part - 1) / points_per_part, threads, m_parts, m_crossings,
+                    find_part);
+    complete(boundary, obstacle, x0, StepEnd::start);
+    complete(boundary, obstacle, x1, StepEnd::end);
+    for (const Crossing& crossing : m_crossings) report(crossing, obstacle, limbs);
+}
+
+void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
+                                           const Points& x1) {
+    const Obstacle& shape = boundary.obstacles[static_cast<size_t>(obstacle)];
+    if (!is_usable_primitive(shape)) return;
+    const Pose to_local0 = shape.pose0.inverse(), to_local1 = shape.pose1.inverse();
+    const auto follow = [&](int point, const Vec3& from, const Vec3& to) {
+        const Vec3 p0 = to_local0 * from, p1 = to_local1 * to;
+        const PrimitivePath path = follow_path(shape, p0, p1);
+        if (!path.meets || path.in.distance < -shallow) return;
+        const auto place = [](const PrimitiveHit& hit) {
+            return Place{true, 0.0, -1, hit.point, hit.normal};
+        };
+        Crossing crossing{point, place(path.in), place(path.out)};
+        if (path.out.distance < -shallow) crossing.out = {true, 1.0, -1, p1, -path.in.normal};
+        report(crossing, obstacle, nullptr);
+    };
+    const int count = static_cast<int>(x0.rows());
+    for (int i = 0; i < count; ++i)
+        if (!m_pinned[static_cast<size_t>(i)]) follow(i, x0.row(i), x1.row(i));
+    for (int sample = 0; sample < m_samples.count(); ++sample) {
+        const SurfaceSamples::Corners corners = m_samples.corners(sample);
+        if (m_samples.is_movable(sample))
+            follow(count + sample, corners.position(x0), corners.position(x1));
+    }
+}
+
+const std::vector<Tunnelling>& TunnellingDetector::find(const Boundary& boundary, const Points& x0,
+                                                        const Points& x1, int threads) {
+    m_found.clear();
+    for (const auto& mesh : m_meshes) mesh->used = false;
+    for (int k = 0; k < static_cast<int>(boundary.obstacles.size()); ++k) {
+        const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(k)];
+        if (obstacle.shape == ObstacleShape::mesh)
+            find_in_mesh(boundary, k, x0, x1, threads);
+        else
+            find_in_primitive(boundary, k, x0, x1);
+    }
+    m_meshes.erase(std::remove_if(m_meshes.begin(), m_meshes.end(),
+                                  [](const auto& mesh) { return !mesh->used; }),
+                   m_meshes.end());
+    return m_found;
+}
+
+}  // namespace cloth

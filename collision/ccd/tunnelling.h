@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "collision/ccd/motion_tree.h"
+#include "collision/proximity/proximity.h"
+#include "collision/proximity/surface_samples.h"
+
+namespace cloth {
+
+/// A point of a garment's surface that went through a solid.
+struct Tunnelling {
+    int point = -1;          ///< a vertex, or |V| + a sample (see SurfaceSamples)
+    int obstacle = -1;       ///< index into Boundary::obstacles
+    int limb = -1;           ///< of that obstacle, if it has limbs
+    double thickness = 0.0;  ///< from where it went in to where it came out, at t + dt (m)
+};
+
+/// Continuous collision detection: what a garment went through between two frames, although it is
+/// outside at both.
+///
+///     TunnellingDetector detector(garment);
+///     for (const Tunnelling& solid : detector.find(boundary, x_before, x_after, threads)) { ... }
+///
+/// Vertices move on straight lines, obstacles evenly. A vertex went through a solid if it went in
+/// and came out on sides that face away from each other, 5 mm apart or more: cloth
+/// that slides around an arm, or over the edge of a box, cuts corners but goes through nothing. A
+/// vertex that starts (or ends) inside, no deeper than 5 mm, went in (or came out) where it is
+/// nearest to the surface; in a mesh, one that does both is not seen. One that starts deeper is not
+/// reported, one that ends deeper is. Pinned vertices, which go where they are told, and limbs that
+/// a vertex ignores are passed over; in at one limb and out at another is a fold of the body, no
+/// solid. In a mesh without limbs it counts as one: there, the finer steps that follow keep cloth
+/// from being torn between surfaces that close on it.
+///
+/// Meshes: a hierarchy of FCL's, told apart by relative motion, and FCL's continuous test of point
+/// and triangle. Primitives: conservative advancement in their own frame; that costs so little that
+/// face centres and edge midpoints are followed too.
+class TunnellingDetector {
+ public:
+    explicit TunnellingDetector(const Garment& garment);
+    ~TunnellingDetector();
+
+    /// Replaces found(), whose order depends on the arguments alone. Unusable obstacles (see
+    /// check_obstacles) are passed over.
+    /// @param x0, x1   the garment's vertices at t and t + dt (|V| x 3, m)
+    /// @param threads  0: as many as OpenMP gives
+    const std::vector<Tunnelling>& find(const Boundary& boundary, const Points& x0,
+                                        const Points& x1, int threads);
+
+    const std::vector<Tunnelling>& found() const { return m_found; }
+
+    /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
+    /// as thick as the longest way through it. +inf: there is none.
+    double thinnest() const;
+
+ private:
+    struct MovingMesh;
+    struct Crossing;
+
+    MovingMesh& moving(const Obstacle& mesh);
+    void find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
+                           const Points& x1);
+    void find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0, const Points& x1,
+                      int threads);
+    static Crossing cross(const Obstacle& mesh, const MotionTree& tree, const Vec3& p0,
+                          const Vec3& p1, LimbSet ignored, std::vector<int>& stack);
+    void complete(const Boundary& boundary, int obstacle, const Points& x, StepEnd end);
+    void report(const Crossing& crossing, int obstacle, const std::vector<std::uint8_t>* limbs);
+
+    SurfaceSamples m_samples;
+    std::vector<char> m_pinned;  ///< |V|
+    std::vector<std::unique_ptr<MovingMesh>> m_meshes;
+    std::vector<Crossing> m_crossings;
+    std::vector<std::vector<Crossing>> m_parts;
+    std::vector<int> m_rows;
+    Points m_motion;  ///< of a mesh's vertices (m)
+    Proximity m_proximity;
+    SurfaceContacts m_contacts;  ///< |V|
+    std::vector<Tunnelling> m_found;
+};
+
+}  // namespace cloth

@@ -1,0 +1,215 @@
+#include "collision/proximity/limb_overlap.h"
+
+#include <algorithm>
+
+#include "data/core/check_range.h"
+
+namespace cloth {
+namespace {
+
+LimbSet only(size_t limb) {
+    return LimbSet(1) << limb;
+}
+
+}  // namespace
+
+LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
+    check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
+    check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
+    check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);
+}
+
+/// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
+/// step. Obstacles without limbs may come and go.
+bool LimbOverlap::learn_limbs(const Boundary& boundary) {
+    m_found.clear();
+    m_has_limbs.clear();
+    for (const Obstacle& obstacle : boundary.obstacles) {
+        m_has_limbs.push_back(has_limbs(obstacle));
+        if (m_has_limbs.back()) m_found.push_back(obstacle.limbs);
+    }
+    std::sort(m_found.begin(), m_found.end());
+    if (m_found != m_known) {
+        m_known = m_found;
+        m_joined.fill(0);
+        m_home.clear();
+        m_buried = 0;
+        for (size_t k = 0; k < boundary.obstacles.size(); ++k)
+            if (m_has_limbs[k]) add_joints(boundary.obstacles[k]);
+    }
+    return !m_known.empty();
+}
+
+/// Limbs are joined where their faces share a vertex.
+void LimbOverlap::add_joints(const Obstacle& obstacle) {
+    const Faces& faces = *obstacle.faces;
+    std::vector<LimbSet> at_vertex(static_cast<size_t>(obstacle.x0.rows()), 0);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k)
+            if (faces(f, k) >= 0 && faces(f, k) < obstacle.x0.rows())
+                at_vertex[static_cast<size_t>(faces(f, k))] |=
+                    only((*obstacle.limbs)[static_cast<size_t>(f)]);
+    for (const LimbSet meeting : at_vertex)
+        for (size_t limb = 0; limb < max_limbs; ++limb)
+            if ((meeting & only(limb)) != 0) m_joined[limb] |= meeting;
+}
+
+/// To a single limb, itself among them.
+LimbSet LimbOverlap::joined(LimbSet limb) const {
+    for (size_t k = 0; k < max_limbs; ++k)
+        if (limb == only(k)) return m_joined[k];
+    return 0;
+}
+
+LimbSet LimbOverlap::limb_at(const Boundary& boundary, int obstacle, int face) const {
+    const auto k = static_cast<size_t>(obstacle);
+    if (obstacle < 0 || face < 0 || !m_has_limbs[k]) return 0;
+    return only((*boundary.obstacles[k].limbs)[static_cast<size_t>(face)]);
+}
+
+LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
+    const auto i = static_cast<size_t>(vertex);
+    return limb_at(boundary, m_near.obstacle[i], m_near.face[i]);
+}
+
+void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
+    const auto count = static_cast<size_t>(x.rows());
+    if (m_home.size() != count) {
+        m_home.assign(count, 0);
+        m_strangers.assign(count, 0);
+        m_ignored.assign(count, 0);
+        m_without.assign(count, 0);
+        m_proximity.query(x, boundary, m_near);
+        m_near_home = m_near;
+    }
+    m_rows.clear();
+    for (size_t i = 0; i < count; ++i)
+        if (m_home[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
+    if (m_rows.empty()) return;
+    m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, {&m_without});
+    for (const int i : m_rows) {
+        const auto vertex = static_cast<size_t>(i);
+        m_home[vertex] = limb_of(boundary, i);
+        for (size_t limb = 0; limb < max_limbs; ++limb)
+            if (m_home[vertex] == only(limb)) m_strangers[vertex] = ~m_joined[limb];
+    }
+}
+
+/// Whether the vertex is outside of the limb in m_near, with room between limb and home.
+bool LimbOverlap::is_clear(int vertex, LimbSet limb, StepEnd end) {
+    if (m_near.distance[vertex] > m_settings.reach) return true;
+    if (m_near.distance[vertex] < m_settings.margin) return false;
+    const bool folded = (m_strangers[static_cast<size_t>(vertex)] & limb) == 0;
+    const LimbSet own = folded ? limb : joined(limb);
+    if (m_proximity.cover(m_near, vertex, end, own).depth > 0.0) return false;
+    if (!m_near_home.has(vertex)) return true;
+    const bool start = end == StepEnd::start;
+    const Vec3 home = (start ? m_near_home.point0 : m_near_home.point1).row(vertex);
+    const Vec3 point = (start ? m_near.point0 : m_near.point1).row(vertex);
+    return (home - point).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
+}
+
+/// Marks the limbs that are not clear of vertices which ignore them.
+void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
+    for (size_t limb = 0; limb < max_limbs; ++limb) {
+        m_rows.clear();
+        for (size_t i = 0; i < m_home.size(); ++i)
+            if ((m_ignored[i] & ~m_keep[i] & only(limb)) != 0) {
+                m_rows.push_back(static_cast<int>(i));
+                m_without[i] = ~only(limb);
+            }
+        if (m_rows.empty()) continue;
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without});
+        for (const int i : m_rows)
+            if (m_near.has(i) && !is_clear(i, only(limb), end))
+                m_keep[static_cast<size_t>(i)] |= only(limb);
+    }
+}
+
+/// Lets vertices touch what they are clear of, at both ends; m_near_home is to be of the start.
+void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
+    const auto none = [](LimbSet limbs) { return limbs == 0; };
+    if (std::all_of(m_ignored.begin(), m_ignored.end(), none)) return;
+    m_keep.assign(m_home.size(), 0);
+    keep(boundary, x0, StepEnd::start);
+    keep(boundary, x1, StepEnd::end);
+    LimbSet kept = 0;
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_ignored[i] &= m_keep[i];
+        kept |= m_keep[i];
+    }
+    m_buried &= kept;
+}
+
+/// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
+void LimbOverlap::find_buried(const Boundary& boundary, const Points& x, StepEnd end) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_without[i] = ~m_strangers[i] | m_ignored[i];
+        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    }
+    while (!m_rows.empty()) {
+        m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
+        m_next.clear();
+        for (const int i : m_rows) {
+            const LimbSet limb = limb_of(boundary, i) & ~m_without[static_cast<size_t>(i)];
+            if (limb == 0) continue;
+            m_without[static_cast<size_t>(i)] |= limb;
+            m_next.push_back(i);
+            if (m_proximity.cover(m_near, i, end, joined(limb)).depth > 0.0) m_buried |= limb;
+        }
+        m_rows.swap(m_next);
+    }
+}
+
+void LimbOverlap::ignore_buried() {
+    if (m_buried == 0) return;
+    for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & m_strangers[i];
+}
+
+/// Lets vertices that are inside a joined limb ignore it where it lies over the skin at home, which
+/// m_near_home then holds.
+void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_home.size(); ++i) {
+        m_without[i] = ~m_home[i];
+        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    }
+    m_proximity.query_rows(x, m_rows, boundary, m_near_home, end, {&m_without, m_settings.reach});
+    m_next.clear();
+    for (const int i : m_rows) {
+        const auto vertex = static_cast<size_t>(i);
+        const LimbSet not_joined = m_home[vertex] | m_strangers[vertex];
+        const Cover cover = m_proximity.cover(m_near_home, i, end, not_joined);
+        if (!(cover.depth > m_settings.least_cover)) continue;
+        m_without[vertex] = ~limb_at(boundary, m_near_home.obstacle[vertex], cover.face);
+        m_next.push_back(i);
+    }
+    m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});
+    for (const int i : m_next)
+        if (!m_near.has(i) || m_near.distance[i] <= 0.0)
+            m_ignored[static_cast<size_t>(i)] |= ~m_without[static_cast<size_t>(i)];
+}
+
+const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
+    if (!learn_limbs(boundary)) {
+        m_ignored.clear();
+        return boundary;
+    }
+    find_homes(boundary, state.x);
+    m_x = state.x + dt * state.v;
+    find_buried(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
+    ignore_buried();
+    ignore_folded(boundary, state.x, StepEnd::start);
+    release(boundary, state.x, m_x);
+    ignore_folded(boundary, m_x, StepEnd::end);
+    find_buried(boundary, m_x, StepEnd::end);
+    ignore_buried();
+    const auto any = [](LimbSet limbs) { return limbs != 0; };
+    if (std::none_of(m_ignored.begin(), m_ignored.end(), any)) return boundary;
+    m_boundary = boundary;
+    m_boundary.ignored_limbs = m_ignored;
+    return m_boundary;
+}
+
+}  // namespace cloth

@@ -1,0 +1,317 @@
+#include "collision/proximity/proximity.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/geometry/faces_in_range.h"
+#include "collision/geometry/primitives.h"
+#include "collision/geometry/triangle.h"
+#include "collision/proximity/mesh_surface.h"
+#include "data/core/errors.h"
+
+namespace cloth {
+
+namespace {
+
+constexpr double no_distance = std::numeric_limits<double>::infinity();
+constexpr long forget_after = 64;    // queries
+constexpr size_t max_hint_sets = 4;  // sets of query points of different size
+constexpr int min_parallel = 512;    // points; fewer are not worth waking threads
+
+/// The closest face of each point in the last query of as many points.
+using Hints = std::vector<int>;
+
+struct CachedMesh {
+    std::shared_ptr<const Faces> faces;  // held, so that the pointer stays a key
+    std::shared_ptr<const std::vector<std::uint8_t>> limbs;
+    int occurrence;  // the same faces may stand in one boundary several times
+    long last_seen;
+    std::unique_ptr<MeshSurface> surface;  // null: the faces are unusable
+    std::vector<Hints> hint_sets;          // the latest first
+};
+
+/// One usable obstacle of the boundary, ready for queries.
+struct Target {
+    int index;
+    const Obstacle* obstacle;
+    const MeshSurface* surface;  // null: a primitive
+    int* hints;                  // mesh: |points|
+    Pose to_local;               // primitive: from the world to its frame
+};
+
+/// The nearest surface point found so far for one query point.
+struct Nearest {
+    const Target* target = nullptr;
+    double distance = no_distance;
+    SurfaceHit on_mesh;
+    PrimitiveHit on_primitive;
+};
+
+int* hints_for(CachedMesh& mesh, size_t count) {
+    auto& sets = mesh.hint_sets;
+    auto found = std::find_if(sets.begin(), sets.end(),
+                              [&](const Hints& hints) { return hints.size() == count; });
+    if (found == sets.end()) {
+        if (sets.size() == max_hint_sets) sets.pop_back();
+        found = sets.insert(sets.end(), Hints(count, -1));
+    }
+    std::rotate(sets.begin(), found, found + 1);
+    return sets.front().data();
+}
+
+Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
+                     LimbSet ignored, ClosestFaceTree::Stack& stack) {
+    Nearest nearest;
+    if (!x.allFinite()) return nearest;
+    for (const Target& target : targets) {
+        if (target.surface) {
+            const SurfaceHit hit =
+                target.surface->closest(x, radius, target.hints[point], stack, ignored);
+            if (hit.face < 0) continue;
+            target.hints[point] = hit.face;
+            if (hit.distance >= nearest.distance) continue;
+            nearest.on_mesh = hit;
+            nearest.distance = hit.distance;
+        } else {
+            const PrimitiveHit hit = closest_on_primitive(*target.obstacle, target.to_local * x);
+            if (hit.distance > radius || hit.distance >= nearest.distance) continue;
+            nearest.on_primitive = hit;
+            nearest.distance = hit.distance;
+        }
+        nearest.target = &target;
+    }
+    return nearest;
+}
+
+/// A point of a face and the face's normal; without area there, the normal is left as it is.
+void place_on_face(const Points& x, const Faces& faces, const SurfaceHit& hit, Vec3& point,
+                   Vec3& normal) {
+    const Vec3 a = x.row(faces(hit.face, 0)), b = x.row(faces(hit.face, 1));
+    const Vec3 c = x.row(faces(hit.face, 2));
+    const Vec3& w = hit.barycentric;
+    point = w[0] * a + w[1] * b + w[2] * c;
+    Vec3 fresh;
+    if (triangle_normal(a, b, c, fresh)) normal = fresh;
+}
+
+void clear_row(SurfaceContacts& contacts, Eigen::Index i) {
+    contacts.obstacle[size_t(i)] = contacts.face[size_t(i)] = -1;
+    for (Points* rows : {&contacts.barycentric, &contacts.point0, &contacts.point1,
+                         &contacts.normal0, &contacts.normal1})
+        rows->row(i).setZero();
+    contacts.distance[i] = no_distance;
+}
+
+void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
+               SurfaceContacts& contacts) {
+    if (!nearest.target) return clear_row(contacts, i);
+    const Obstacle& obstacle = *nearest.target->obstacle;
+    Vec3 point[2], normal[2];
+    if (nearest.target->surface) {
+        const Points* ends[2] = {&obstacle.x0, &obstacle.x1};
+        const int chosen = chosen_at == StepEnd::start ? 0 : 1, carried = 1 - chosen;
+        for (const int end : {chosen, carried}) {
+            if (end == carried) normal[carried] = normal[chosen];
+            place_on_face(*ends[end], *obstacle.faces, nearest.on_mesh, point[end], normal[end]);
+        }
+        if (!point[carried].allFinite()) return clear_row(contacts, i);
+        contacts.barycentric.row(i) = nearest.on_mesh.barycentric;
+    } else {
+        const PrimitiveHit& hit = nearest.on_primitive;
+        const Pose* ends[2] = {&obstacle.pose0, &obstacle.pose1};
+        for (const int end : {0, 1}) {
+            point[end] = *ends[end] * hit.point;
+            normal[end] = ends[end]->linear() * hit.normal;
+        }
+        contacts.barycentric.row(i) = hit.point;
+    }
+    contacts.obstacle[size_t(i)] = nearest.target->index;
+    contacts.face[size_t(i)] = nearest.target->surface ? nearest.on_mesh.face : -1;
+    contacts.point0.row(i) = point[0];
+    contacts.point1.row(i) = point[1];
+    contacts.normal0.row(i) = normal[0];
+    contacts.normal1.row(i) = normal[1];
+    contacts.distance[i] = nearest.distance;
+}
+
+void resize(SurfaceContacts& contacts, Eigen::Index count) {
+    contacts.obstacle.resize(size_t(count));
+    contacts.face.resize(size_t(count));
+    for (Points* rows : {&contacts.barycentric, &contacts.point0, &contacts.point1,
+                         &contacts.normal0, &contacts.normal1})
+        rows->resize(count, 3);
+    contacts.distance.resize(count);
+    contacts.ridges.clear();
+}
+
+}  // namespace
+
+struct Proximity::Impl {
+    ProximitySettings settings;
+    long queries = 0;
+    std::vector<CachedMesh> meshes;
+    std::vector<Target> targets;
+    std::vector<ClosestFaceTree::Stack> stacks;  // one per thread
+
+    int thread_count() const {
+        return settings.threads > 0 ? settings.threads : omp_get_max_threads();
+    }
+
+    CachedMesh& cached(const Obstacle& obstacle, const Points& x) {
+        int occurrence = 0;
+        for (CachedMesh& mesh : meshes) {
+            if (mesh.faces != obstacle.faces || mesh.limbs != obstacle.limbs) continue;
+            if (mesh.last_seen == queries) {
+                ++occurrence;
+                continue;
+            }
+            if (mesh.occurrence == occurrence) return mesh;
+        }
+        std::unique_ptr<MeshSurface> surface;
+        if (faces_in_range(*obstacle.faces, x.rows()))
+            surface = std::make_unique<MeshSurface>(obstacle.faces, x, settings.radius,
+                                                    obstacle.limbs.get());
+        meshes.push_back(
+            {obstacle.faces, obstacle.limbs, occurrence, queries, std::move(surface), {}});
+        return meshes.back();
+    }
+
+    void add_target(int index, const Obstacle& obstacle, StepEnd end, size_t count) {
+        Target target{index, &obstacle, nullptr, nullptr, Pose::Identity()};
+        if (obstacle.shape != ObstacleShape::mesh) {
+            if (!is_usable_primitive(obstacle)) return;
+            target.to_local = (end == StepEnd::start ? obstacle.pose0 : obstacle.pose1).inverse();
+        } else {
+            const Points& x = end == StepEnd::start ? obstacle.x0 : obstacle.x1;
+            if (!obstacle.faces || obstacle.x0.rows() != obstacle.x1.rows()) return;
+            CachedMesh& mesh = cached(obstacle, x);
+            mesh.last_seen = queries;
+            if (!mesh.surface || mesh.surface->vertex_count() != x.rows()) return;
+            mesh.surface->refit(x);
+            target.surface = mesh.surface.get();
+            target.hints = hints_for(mesh, count);
+        }
+        targets.push_back(target);
+    }
+
+    void prepare(const Boundary& boundary, StepEnd end, size_t count) {
+        ++queries;
+        targets.clear();
+        for (size_t i = 0; i < boundary.obstacles.size(); ++i)
+            add_target(static_cast<int>(i), boundary.obstacles[i], end, count);
+        meshes.erase(std::remove_if(meshes.begin(), meshes.end(),
+                                    [&](const CachedMesh& mesh) {
+                                        return queries - mesh.last_seen > forget_after;
+                                    }),
+                     meshes.end());
+        stacks.resize(std::max(stacks.size(), size_t(thread_count())));
+    }
+
+    /// Calls store(i, nearest) for the given rows of x; null: for all of them.
+    /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
+    template <class Store>
+    void for_each_nearest(const Points& x, const std::vector<int>* rows,
+                          const std::vector<LimbSet>& ignored, double radius, const Store& store) {
+        radius = std::min(radius, settings.radius);
+        const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
+        const int threads = count < min_parallel || targets.empty() ? 1 : thread_count();
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
+        for (int at = 0; at < count; ++at) {
+            const int i = rows ? (*rows)[size_t(at)] : at;
+            ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
+            const LimbSet passed_over = ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
+            store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over, stack));
+        }
+    }
+};
+
+Proximity::Proximity(ProximitySettings settings) : m_impl(std::make_unique<Impl>()) {
+    if (!(settings.radius > 0.0) || !std::isfinite(settings.radius))
+        throw ArgumentError("ProximitySettings::radius", "it is not positive and finite",
+                            "give a length of 0.01 to 0.5 m");
+    m_impl->settings = settings;
+}
+
+Proximity::~Proximity() = default;
+Proximity::Proximity(Proximity&&) noexcept = default;
+Proximity& Proximity::operator=(Proximity&&) noexcept = default;
+
+const ProximitySettings& Proximity::settings() const {
+    return m_impl->settings;
+}
+
+int Proximity::cached_meshes() const {
+    return static_cast<int>(m_impl->meshes.size());
+}
+
+void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
+                      StepEnd chosen_at) {
+    resize(contacts, x.rows());
+    m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
+    m_impl->for_each_nearest(
+        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
+        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+}
+
+void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
+                           SurfaceContacts& contacts, StepEnd chosen_at,
+                           const QueryLimits& limits) {
+    m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
+    m_impl->for_each_nearest(
+        x, &rows, limits.ignored ? *limits.ignored : boundary.ignored_limbs, limits.radius,
+        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+}
+
+Cover Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                       LimbSet ignored) {
+    constexpr double length = 0.5;  // m: thicker than any limb
+    if (!contacts.has(i)) return {};
+    const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
+    for (const Target& target : m_impl->targets)
+        if (target.index == contacts.obstacle[size_t(i)] && target.surface)
+            return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
+                                         m_impl->stacks[0], ignored);
+    return {};
+}
+
+void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,
+                                VectorX& distance) {
+    distance.resize(x.rows());
+    m_impl->prepare(boundary, end, size_t(x.rows()));
+    m_impl->for_each_nearest(
+        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
+        [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
+}
+
+static void check_mesh(const std::string& name, const Obstacle& mesh) {
+    if (!mesh.faces || mesh.faces->rows() == 0)
+        throw ArgumentError(name, "a mesh obstacle without faces", "set Obstacle::faces");
+    if (mesh.x0.rows() != mesh.x1.rows())
+        throw ArgumentError(name, "x0 and x1 have different numbers of vertices",
+                            "give the same vertices at t and at t + dt");
+    if (!faces_in_range(*mesh.faces, mesh.x0.rows()))
+        throw ArgumentError(name, "a face refers to a vertex that does not exist",
+                            "give x0 and x1 of all vertices, numbered from 0");
+    if (mesh.limbs && !has_limbs(mesh))
+        throw ArgumentError(name, "has not one limb from 0 to 31 for each face",
+                            "give |F| limbs, or leave Obstacle::limbs empty");
+    if (!mesh.x0.allFinite() || !mesh.x1.allFinite())
+        throw ArgumentError(name, "a vertex is not finite", "check the pose that made it");
+}
+
+void check_obstacles(const Boundary& boundary) {
+    for (size_t i = 0; i < boundary.obstacles.size(); ++i) {
+        const std::string name = "Boundary::obstacles[" + std::to_string(i) + "]";
+        const Obstacle& obstacle = boundary.obstacles[i];
+        if (obstacle.shape == ObstacleShape::mesh)
+            check_mesh(name, obstacle);
+        else if (!is_usable_primitive(obstacle))
+            throw ArgumentError(name, "a size is negative, or a size or pose is not finite",
+                                "check half_extents, radius, pose0 and pose1");
+    }
+}
+
+}  // namespace cloth

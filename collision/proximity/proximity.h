@@ -1,0 +1,121 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "data/core/boundary.h"
+
+namespace cloth {
+
+enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
+
+/// Contact of a point within a garment's face, or on its edge, with an obstacle: the tangent plane
+/// of the surface point that was closest at t, at t + dt. See RidgeFinder.
+struct RidgeContact {
+    int face = -1;                 ///< of the garment
+    std::array<double, 3> weight;  ///< of the face's corners, 0 to 1
+    Vec3 normal;                   ///< unit, outward
+    double height = 0.0;           ///< of the plane: surface point . normal (m)
+};
+
+/// Nearest surface points of a set of query points, one row each. The closest point is chosen on
+/// the surfaces at t and carried along to t + dt (same face, same barycentric coordinates). Rows
+/// without a contact are zero, their distance is infinite.
+struct SurfaceContacts {
+    std::vector<int> obstacle;  ///< |V|: index into Boundary::obstacles, -1: none within the radius
+    std::vector<int> face;      ///< |V|: face of a mesh obstacle, -1 for primitives
+    Points barycentric;       ///< |V| x 3: coordinates in that face, or local frame of a primitive
+    Points point0, point1;    ///< |V| x 3 (m): the surface point at t and at t + dt
+    Points normal0, normal1;  ///< |V| x 3: unit face normal there (outward) at t and at t + dt
+    VectorX distance;         ///< |V| (m): signed distance at t, negative inside; +inf: none
+    std::vector<RidgeContact> ridges;  ///< faces and edges over ridges; a query leaves it empty
+
+    bool has(Eigen::Index i) const { return obstacle[static_cast<size_t>(i)] >= 0; }
+    /// No contacts at all, as where there are no obstacles.
+    void clear() {
+        obstacle.clear();
+        ridges.clear();
+    }
+    /// Mean velocity of the surface point over the step (m/s).
+    Vec3 velocity(Eigen::Index i, double dt) const { return (point1.row(i) - point0.row(i)) / dt; }
+};
+
+struct ProximitySettings {
+    double radius = 0.1;  ///< how far a query looks (m), 0.01 to 0.5; larger costs time
+    int threads = 0;      ///< 0: as many as OpenMP gives; results do not depend on it
+};
+
+/// What a query of some rows leaves out.
+struct QueryLimits {
+    const std::vector<LimbSet>* ignored = nullptr;  ///< limbs that each row passes over; null:
+                                                    ///< Boundary::ignored_limbs, if it fits
+    double radius = std::numeric_limits<double>::infinity();  ///< look no farther than this (m),
+                                                              ///< nor than ProximitySettings
+};
+
+/// What lies over a surface point of a mesh, see Proximity::cover().
+struct Cover {
+    double depth = 0.0;  ///< how much of it (m, along the normal); 0: nothing
+    int face = -1;       ///< its face on the far side, -1: nothing
+};
+
+/// Nearest-point queries against the obstacles of a Boundary, on FCL's bounding volume hierarchies.
+///
+///     Proximity proximity;
+///     proximity.query(state.x, boundary, contacts);
+///     if (contacts.has(i) && contacts.distance[i] < 0) { ... vertex i is inside ... }
+///
+/// The hierarchy of a mesh is built when its `faces` pointer is first seen and refitted afterwards;
+/// the closest face of the previous query of the same vertex bounds the next one. A mesh that no
+/// query has shown for a while is forgotten. Results depend on the arguments alone: not on earlier
+/// queries, nor on the number of threads.
+///
+/// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
+/// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points
+/// with coordinates that are not finite have no contact. Unusable obstacles (see check_obstacles)
+/// are passed over, since nothing on the per-frame path throws.
+class Proximity {
+ public:
+    explicit Proximity(ProximitySettings settings = {});
+    ~Proximity();
+    Proximity(Proximity&&) noexcept;
+    Proximity& operator=(Proximity&&) noexcept;
+
+    const ProximitySettings& settings() const;
+
+    /// Nearest points at t of the points `x` (|V| x 3, m), carried to t + dt.
+    /// @param chosen_at  end: nearest points at t + dt, carried back to t
+    void query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
+               StepEnd chosen_at = StepEnd::start);
+
+    /// Repeats a query for some rows of `x` only (ascending or not, each at most once); the other
+    /// rows of `contacts`, which has |V| rows from a query before, are left as they are.
+    void query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
+                    SurfaceContacts& contacts, StepEnd chosen_at = StepEnd::start,
+                    const QueryLimits& limits = {});
+
+    /// Signed distance (m) of `x` to the surfaces at one end of the step; +inf beyond the radius.
+    /// Boundary::ignored_limbs is used if it has as many rows.
+    void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
+
+    /// The part of its own mesh that lies over row i's surface point, up to half a metre. To be
+    /// asked right after the query, for the same end.
+    /// @param ignored  limbs that do not count
+    Cover cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                LimbSet ignored = 0);
+
+    /// Mesh hierarchies that are kept at present.
+    int cached_meshes() const;
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+/// For set-up code: throws ArgumentError, naming the obstacle, if a query would have to pass it
+/// over (no faces, indices out of range, x0 or x1 without those vertices or not finite, bad sizes).
+void check_obstacles(const Boundary& boundary);
+
+}  // namespace cloth

@@ -1,0 +1,130 @@
+#include "collision/proximity/ridge_contacts.h"
+
+#include <algorithm>
+
+#include "collision/proximity/direction.h"
+#include "collision/response/resolve.h"
+
+namespace cloth {
+namespace {
+
+// Normals that part by less than 25 degrees: over edges of 2 cm the surface rises by 1 mm between
+// the vertices, which the contact distance covers.
+constexpr double smooth = 0.9;
+// Skins that face each other are two bodies, or two limbs, and the cloth is pinched between them.
+constexpr double opposite = -0.5;
+constexpr double reach = 0.03;  // m: samples further from the surface get no contact
+
+bool in_reach(const SurfaceContacts& contacts, int vertex) {
+    return contacts.has(vertex) && contacts.distance[vertex] < 2.0 * reach;
+}
+
+}  // namespace
+
+RidgeFinder::RidgeFinder(const Garment& garment) : m_faces(garment.rest().faces) {
+    add_faces(garment.is_pinned());
+    add_edges(garment.is_pinned());
+    m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
+    m_rows.reserve(m_samples.size());
+    Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
+}
+
+void RidgeFinder::add_faces(const std::vector<char>& pinned) {
+    const auto is_free = [&](int face, int corner) {
+        return pinned[static_cast<size_t>(m_faces(face, corner))] == 0;
+    };
+    for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
+        if (is_free(face, 0) || is_free(face, 1) || is_free(face, 2))
+            m_samples.push_back({face, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}});
+}
+
+/// Each edge once, as part of the first of its faces.
+void RidgeFinder::add_edges(const std::vector<char>& pinned) {
+    std::vector<std::pair<std::array<int, 2>, Sample>> edges;
+    for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
+        for (int corner = 0; corner < 3; ++corner) {
+            const int next = (corner + 1) % 3;
+            const auto [low, high] = std::minmax(m_faces(face, corner), m_faces(face, next));
+            if (pinned[static_cast<size_t>(low)] && pinned[static_cast<size_t>(high)]) continue;
+            Sample sample{face, {0.0, 0.0, 0.0}};
+            sample.weight[static_cast<size_t>(corner)] = 0.5;
+            sample.weight[static_cast<size_t>(next)] = 0.5;
+            edges.push_back({{low, high}, sample});
+        }
+    const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
+    std::stable_sort(edges.begin(), edges.end(), by_edge);
+    for (size_t k = 0; k < edges.size(); ++k)
+        if (k == 0 || edges[k].first != edges[k - 1].first) m_samples.push_back(edges[k].second);
+}
+
+void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Points& x,
+                       SurfaceContacts& contacts, StepEnd chosen_at) {
+    contacts.ridges.clear();
+    m_rows.clear();
+    for (size_t k = 0; k < m_samples.size(); ++k) {
+        if (!bends(m_samples[k], contacts, chosen_at)) continue;
+        const int row = static_cast<int>(k);
+        m_rows.push_back(row);
+        m_x.row(row).setZero();
+        for (size_t c = 0; c < 3; ++c)
+            m_x.row(row) += m_samples[k].weight[c] * x.row(vertex(m_samples[k], c));
+    }
+    if (m_rows.empty()) return;
+    m_ignored.resize(m_samples.size());
+    for (const int row : m_rows) {
+        const Sample& sample = m_samples[static_cast<size_t>(row)];
+        LimbSet& ignored = m_ignored[static_cast<size_t>(row)] = 0;
+        for (size_t c = 0; c < 3; ++c)
+            if (sample.weight[c] > 0.0) ignored |= ignored_limbs(boundary, vertex(sample, c));
+    }
+    proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at, {&m_ignored});
+    for (const int row : m_rows) {
+        if (!m_near.has(row) || !(m_near.distance[row] < reach)) continue;
+        const RidgeContact found = ridge(row, chosen_at);
+        if (agrees(found, contacts)) contacts.ridges.push_back(found);
+    }
+}
+
+/// Whether two corners of a face, or both ends of an edge, stand on skins that part.
+bool RidgeFinder::bends(const Sample& sample, const SurfaceContacts& contacts,
+                        StepEnd chosen_at) const {
+    const bool start = chosen_at == StepEnd::start;
+    const Points& normals = start ? contacts.normal0 : contacts.normal1;
+    const Points& points = start ? contacts.point0 : contacts.point1;
+    for (size_t c = 0; c < 3; ++c) {
+        const size_t next = (c + 1) % 3;
+        const int a = vertex(sample, c), b = vertex(sample, next);
+        if (sample.weight[c] == 0.0 || sample.weight[next] == 0.0) continue;
+        if (!in_reach(contacts, a) || !in_reach(contacts, b)) continue;
+        const double cosine = normals.row(a).dot(normals.row(b));
+        if (!(cosine < smooth && cosine > opposite)) continue;
+        // in a valley the normals lean towards each other
+        if ((normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0) return true;
+    }
+    return false;
+}
+
+/// Whether a ridge faces the way that the skins under the face's vertices do; where it does not,
+/// another limb is near and the cloth is pinched.
+bool RidgeFinder::agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const {
+    for (size_t c = 0; c < 3; ++c) {
+        const int corner = m_faces(ridge.face, static_cast<int>(c));
+        if (ridge.weight[c] > 0.0 && in_reach(contacts, corner) &&
+            ridge.normal.dot(contacts.normal1.row(corner)) < opposite)
+            return false;
+    }
+    return true;
+}
+
+RidgeContact RidgeFinder::ridge(int row, StepEnd chosen_at) const {
+    const Sample& sample = m_samples[static_cast<size_t>(row)];
+    RidgeContact ridge;
+    ridge.face = sample.face;
+    ridge.weight = sample.weight;
+    ridge.normal = chosen_at == StepEnd::start ? carried_direction(m_near, row, m_x)
+                                               : outward(m_near, row, m_x);
+    ridge.height = ridge.normal.dot(m_near.point1.row(row).transpose());
+    return ridge;
+}
+
+}  // namespace cloth

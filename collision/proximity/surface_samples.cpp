@@ -1,0 +1,148 @@
+#include "collision/proximity/surface_samples.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "collision/proximity/direction.h"
+
+namespace cloth {
+
+constexpr double near_enough = 2e-2;  // m: skins further away do not matter
+
+static std::vector<std::array<int, 2>> faces_at_edges(const Garment& garment) {
+    std::map<std::pair<int, int>, int> index;
+    const auto key = [](int a, int b) { return std::make_pair(std::min(a, b), std::max(a, b)); };
+    for (size_t e = 0; e < garment.edges().size(); ++e)
+        index[key(garment.edges()[e][0], garment.edges()[e][1])] = static_cast<int>(e);
+    std::vector<std::array<int, 2>> result(garment.edges().size(), {-1, -1});
+    const Faces& faces = garment.rest().faces;
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int k = 0; k < 3; ++k) {
+            const int edge = index.at(key(faces(f, k), faces(f, (k + 1) % 3)));
+            auto& at = result[static_cast<size_t>(edge)];
+            at[at[0] < 0 ? 0 : 1] = static_cast<int>(f);
+        }
+    return result;
+}
+
+SurfaceSamples::SurfaceSamples(const Garment& garment)
+    : m_faces(garment.rest().faces),
+      m_edges(garment.edges()),
+      m_edge_faces(faces_at_edges(garment)) {
+    const Eigen::Index count = m_faces.rows() + static_cast<Eigen::Index>(m_edges.size());
+    m_x.setZero(count, 3);
+    m_distance.setZero(count);  // what is not movable is never deep
+    m_parted.resize(static_cast<size_t>(count));
+    m_movable.resize(static_cast<size_t>(count));
+    for (int sample = 0; sample < count; ++sample)
+        for (const int vertex : corners(sample).vertex)
+            if (!garment.is_pinned()[static_cast<size_t>(vertex)])
+                m_movable[static_cast<size_t>(sample)] = 1;
+    m_rows.reserve(static_cast<size_t>(count));
+    m_deep.reserve(static_cast<size_t>(count));
+    Proximity().query(m_x, Boundary(), m_contacts);  // gives the rows their size
+}
+
+SurfaceSamples::Corners SurfaceSamples::corners(int sample) const {
+    if (sample < face_count()) {
+        const double third = 1.0 / 3.0;
+        return {{m_faces(sample, 0), m_faces(sample, 1), m_faces(sample, 2)},
+                {third, third, third}};
+    }
+    const auto& [a, b] = m_edges[static_cast<size_t>(sample - face_count())];
+    return {{a, b, b}, {0.5, 0.5, 0.0}};
+}
+
+Vec3 SurfaceSamples::way_out(int sample) const {
+    return outward(m_contacts, sample, m_x);
+}
+
+double SurfaceSamples::max_depth() const {
+    double depth = 0.0;
+    for (const int sample : m_deep) depth = std::max(depth, -m_contacts.distance[sample]);
+    return depth;
+}
+
+bool SurfaceSamples::has_changed(int sample, const std::vector<char>* changed) const {
+    if (!m_movable[static_cast<size_t>(sample)]) return false;
+    if (!changed) return true;
+    for (const int vertex : corners(sample).vertex)
+        if ((*changed)[static_cast<size_t>(vertex)]) return true;
+    return false;
+}
+
+bool SurfaceSamples::skins_part(int sample, const SurfaceContacts& contacts) const {
+    const auto at = corners(sample).vertex;
+    const auto part = [&](int a, int b) {
+        return contacts.normal1.row(a).dot(contacts.normal1.row(b)) < 0.0 &&
+               std::min(contacts.distance[a], contacts.distance[b]) < near_enough;
+    };
+    return part(at[0], at[1]) || part(at[1], at[2]) || part(at[2], at[0]);
+}
+
+double SurfaceSamples::vouched_by_vertices(int sample, const Points& x,
+                                           const VectorX& distance) const {
+    double bound = -m_radius;
+    for (const int vertex : corners(sample).vertex) {
+        const double away = (m_x.row(sample) - x.row(vertex)).norm();
+        bound = std::max(bound, std::min(distance[vertex], m_radius) - away);
+    }
+    return bound;
+}
+
+double SurfaceSamples::vouched_by_faces(int edge) const {
+    double bound = -m_radius;
+    for (const int face : m_edge_faces[static_cast<size_t>(edge)]) {
+        if (face < 0 || !m_movable[static_cast<size_t>(face)] ||
+            m_parted[static_cast<size_t>(face)])
+            continue;
+        const double away = (m_x.row(face_count() + edge) - m_x.row(face)).norm();
+        bound = std::max(bound, m_distance[face] - away);
+    }
+    return bound;
+}
+
+/// Searches for the nearest points of the samples in m_rows.
+void SurfaceSamples::search(Proximity& proximity, const Boundary& boundary) {
+    m_ignored.resize(static_cast<size_t>(m_x.rows()));
+    for (const int sample : m_rows) {
+        LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
+        for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
+    }
+    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, {&m_ignored});
+    for (const int sample : m_rows)
+        m_distance[sample] = std::min(m_contacts.distance[sample], m_radius);
+}
+
+void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,
+                               const SurfaceContacts& contacts, double depth,
+                               const std::vector<char>* changed) {
+    m_radius = proximity.settings().radius;
+    const auto update = [&](int sample) {
+        if (!has_changed(sample, changed)) return false;
+        m_x.row(sample) = corners(sample).position(x);
+        char& parted = m_parted[static_cast<size_t>(sample)];
+        parted = skins_part(sample, contacts);
+        m_distance[sample] = parted ? -m_radius : vouched_by_vertices(sample, x, contacts.distance);
+        return true;
+    };
+    m_rows.clear();
+    for (int face = 0; face < face_count(); ++face)
+        if (update(face) && m_distance[face] < -depth) m_rows.push_back(face);
+    search(proximity, boundary);
+    m_rows.clear();
+    for (int edge = 0; edge < static_cast<int>(m_edges.size()); ++edge) {
+        const int sample = face_count() + edge;
+        if (!update(sample) || !(m_distance[sample] < -depth)) continue;
+        if (!m_parted[static_cast<size_t>(sample)])
+            m_distance[sample] = std::max(m_distance[sample], vouched_by_faces(edge));
+        if (m_distance[sample] < -depth) m_rows.push_back(sample);
+    }
+    search(proximity, boundary);
+    m_deep.clear();
+    for (int sample = 0; sample < m_x.rows(); ++sample)
+        if (m_distance[sample] < -depth) m_deep.push_back(sample);
+}
+
+}  // namespace cloth

@@ -1,0 +1,21 @@
+#pragma once
+
+namespace cloth {
+
+/// Whether and how the layers of a garment keep off each other. Off by default: then nothing of it
+/// is built or run.
+struct SelfContactSettings {
+    double thickness = 0.0;  ///< distance that layers keep (m), 1e-3 to 2e-2; 0: off. Above half an
+                             ///< edge's length folds become stiff
+    double weight = 5e5;     ///< w in w max(0, thickness - d)^3 per vertex (N/m^2), 1e3 to 1e6
+    int rounds =
+        8;  ///< of search and push in contact projection, 0 to 100; 0: no contact projection
+    int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
+
+    bool on() const { return thickness > 0.0; }
+};
+
+/// @throws ArgumentError if a setting is out of range
+void check_self_contact(const SelfContactSettings& settings);
+
+}  // namespace cloth

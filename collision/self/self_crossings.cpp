@@ -1,0 +1,74 @@
+#include "collision/self/self_crossings.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/gather_in_order.h"
+
+namespace cloth {
+namespace {
+
+constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
+constexpr double touching = 1e-6;     // m: nearer than this is a touch
+constexpr int max_advances = 200;     // elements that creep along each other are taken to touch
+
+/// Longest way (m) that two points of the elements can come nearer in the whole step; the mean of
+/// the motions, which changes no distance, is taken off.
+double most_approach(bool edges, std::array<Vec3, 4>& motion) {
+    const Vec3 mean = 0.25 * (motion[0] + motion[1] + motion[2] + motion[3]);
+    for (Vec3& part : motion) part -= mean;
+    const double a = motion[0].squaredNorm(), b = motion[1].squaredNorm();
+    const double c = motion[2].squaredNorm(), d = motion[3].squaredNorm();
+    return edges ? std::sqrt(std::max(a, b)) + std::sqrt(std::max(c, d))
+                 : std::sqrt(a) + std::sqrt(std::max({b, c, d}));
+}
+
+}  // namespace
+
+bool crosses(const ElementPair& elements, const Points& x0, const Points& motion, SelfPair& pair) {
+    std::array<Vec3, 4> x = corners_of(elements, x0), moves = corners_of(elements, motion);
+    const double approach = most_approach(elements.edges, moves);
+    ClosestPoints points = closest_points(elements.edges, x);
+    double distance = std::sqrt(points.squared);
+    if (!(distance > 0.0) || distance > approach) return false;
+    const double touch = std::min(touching, 0.1 * distance);
+    double progress = 0.0;
+    for (int k = 0; k < max_advances; ++k) {
+        const double advance = (distance - 0.5 * touch) / approach;
+        progress += advance;
+        if (progress > 1.0) return false;
+        for (size_t i = 0; i < 4; ++i) x[i] += advance * moves[i];
+        points = closest_points(elements.edges, x);
+        distance = std::sqrt(points.squared);
+        if (distance <= touch) break;
+    }
+    if (!(distance > 0.0)) return false;
+    pair = {elements, points.weight, points.offset / distance, distance};
+    return true;
+}
+
+SelfCrossings::SelfCrossings(const Garment& garment)
+    : m_elements(garment), m_faces(garment.rest().vertices, garment.rest().faces) {
+}
+
+const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
+    m_motion = x1 - x0;
+    m_faces.find(x0, m_motion, touching, threads);
+    const auto& faces = m_faces.found();
+    const int count = static_cast<int>(faces.size());
+    const auto find_part = [&](int part, std::vector<SelfPair>& out) {
+        const int end = std::min(count, (part + 1) * faces_per_part);
+        for (int k = part * faces_per_part; k < end; ++k) {
+            const auto& [f, g] = faces[static_cast<size_t>(k)];
+            m_elements.visit(f, g, [&](const ElementPair& elements) {
+                SelfPair pair;
+                if (crosses(elements, x0, m_motion, pair)) out.push_back(pair);
+            });
+        }
+    };
+    gather_in_order((count + faces_per_part - 1) / faces_per_part, threads, m_parts, m_found,
+                    find_part);
+    return m_found;
+}
+
+}  // namespace cloth

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/self/face_pairs.h"
+#include "collision/self/self_proximity.h"
+
+namespace cloth {
+
+/// Elements of a garment that pass through each other during a step: continuous collision
+/// detection.
+///
+/// Each is given as a SelfPair of the moment at which the two are about to touch: its normal points
+/// to the side on which the first element was before.
+class SelfCrossings {
+ public:
+    explicit SelfCrossings(const Garment& garment);
+
+    /// Replaces found() by the pairs whose elements touch when all vertices move evenly from x0 to
+    /// x1 (|V| x 3, m). None is missed whose elements are apart by more than rounding at x0; those
+    /// that are not, such as where the cloth is tangled, have no side and are passed over.
+    /// @param threads  0: as many as OpenMP gives
+    const std::vector<SelfPair>& find(const Points& x0, const Points& x1, int threads);
+
+    const std::vector<SelfPair>& found() const { return m_found; }  ///< in an order of x0, x1 alone
+
+ private:
+    SelfElements m_elements;
+    FacePairs m_faces;
+    Points m_motion;  ///< |V| x 3 (m)
+    std::vector<SelfPair> m_found;
+    std::vector<std::vector<SelfPair>> m_parts;
+};
+
+/// Whether two elements touch on the way from x0 to x0 + motion, and as what pair. Conservative
+/// advancement: they are moved on by what they are apart, over the fastest that they can approach
+/// (Li, Kaufman and Jiang 2021, "Codimensional incremental potential contact", section 5.4).
+bool crosses(const ElementPair& elements, const Points& x0, const Points& motion, SelfPair& pair);
+
+}  // namespace cloth

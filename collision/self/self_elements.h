@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "data/core/garment.h"
+
+namespace cloth {
+
+/// Two elements of one mesh that share no vertex: a vertex and a face, or two edges.
+struct ElementPair {
+    std::array<int, 4> vertex;   ///< the vertex and the face's corners, or the ends of both edges
+    std::array<int, 2> element;  ///< indices of vertex and face, or of both edges
+    bool edges;                  ///< two edges
+};
+
+/// The points of two elements that are closest to each other.
+struct ClosestPoints {
+    std::array<double, 4> weight;  ///< their difference is the sum of weight x: those of the first
+                                   ///< element add up to 1, of the second to -1
+    Vec3 offset;                   ///< that difference (m)
+    double squared;                ///< its squared length (m^2)
+    bool facing;  ///< the elements face each other there: the vertex is above the face, or within
+                  ///< 45 degrees of that; the edges cross, seen along the offset
+};
+
+/// @param corners  positions of the pair's vertices (m)
+ClosestPoints closest_points(bool edges, const std::array<Vec3, 4>& corners);
+
+inline std::array<Vec3, 4> corners_of(const ElementPair& pair, const Points& x) {
+    return {x.row(pair.vertex[0]), x.row(pair.vertex[1]), x.row(pair.vertex[2]),
+            x.row(pair.vertex[3])};
+}
+
+/// The element pairs of pairs of faces, each element pair once however many faces share it: every
+/// vertex and every edge belongs to one of its faces (Curtis, Tamstorf and Manocha 2008, "Fast
+/// collision detection for deformable models using representative-triangles").
+class SelfElements {
+ public:
+    explicit SelfElements(const Garment& garment);
+
+    /// Calls visit(ElementPair) for the pairs of elements that faces f and g own.
+    template <typename Visit>
+    void visit(int f, int g, const Visit& visit) const {
+        visit_vertices(f, g, visit);
+        visit_vertices(g, f, visit);
+        for (const int a : edges_of(f))
+            for (const int b : edges_of(g)) {
+                if (a < 0 || b < 0) continue;
+                const auto& [a0, a1] = m_edges[static_cast<size_t>(a)];
+                const auto& [b0, b1] = m_edges[static_cast<size_t>(b)];
+                if (a0 == b0 || a0 == b1 || a1 == b0 || a1 == b1) continue;
+                visit(ElementPair{{a0, a1, b0, b1}, {a, b}, true});
+            }
+    }
+
+    /// Edges that face f owns, -1 where there are fewer than three.
+    const std::array<int, 3>& edges_of(int f) const { return m_own_edges[static_cast<size_t>(f)]; }
+
+    const Faces& faces() const { return m_faces; }
+    const std::vector<std::array<int, 2>>& edges() const { return m_edges; }
+
+ private:
+    template <typename Visit>
+    void visit_vertices(int f, int g, const Visit& visit) const {
+        const int a = m_faces(g, 0), b = m_faces(g, 1), c = m_faces(g, 2);
+        for (const int v : m_own_vertices[static_cast<size_t>(f)])
+            if (v >= 0 && v != a && v != b && v != c)
+                visit(ElementPair{{v, a, b, c}, {v, g}, false});
+    }
+
+    Faces m_faces;
+    std::vector<std::array<int, 2>> m_edges;
+    std::vector<std::array<int, 3>> m_own_vertices, m_own_edges;  ///< |F|, -1: fewer than three
+};
+
+}  // namespace cloth

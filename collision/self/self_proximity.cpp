@@ -1,0 +1,81 @@
+#include "collision/self/self_proximity.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/geometry/gather_in_order.h"
+#include "data/core/garment_pieces.h"
+
+namespace cloth {
+namespace {
+
+constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
+
+/// Least squared distance from the origin of the points offset + s shift, s in 0 to 1.
+double least_squared(const Vec3& offset, const Vec3& shift) {
+    const double length = shift.squaredNorm();
+    if (!(length > 0.0)) return offset.squaredNorm();
+    const double s = std::clamp(-offset.dot(shift) / length, 0.0, 1.0);
+    return (offset + s * shift).squaredNorm();
+}
+
+Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, const Points& rows) {
+    Vec3 sum = Vec3::Zero();
+    for (size_t k = 0; k < 4; ++k) sum += weight[k] * rows.row(elements.vertex[k]).transpose();
+    return sum;
+}
+
+}  // namespace
+
+SelfProximity::SelfProximity(const Garment& garment, double thickness)
+    : m_elements(garment),
+      m_faces(garment.rest().vertices, garment.rest().faces),
+      m_rest(garment.rest().vertices),
+      m_piece(garment_pieces(garment)),
+      m_thickness(thickness) {
+}
+
+bool SelfProximity::near_at_rest(const ElementPair& elements) const {
+    if (m_piece[static_cast<size_t>(elements.vertex[0])] !=
+        m_piece[static_cast<size_t>(elements.vertex[3])])
+        return false;
+    return closest_points(elements.edges, corners_of(elements, m_rest)).squared <
+           m_thickness * m_thickness;
+}
+
+bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const Points& motion,
+                            double reach, SelfPair& pair) const {
+    const std::array<Vec3, 4> corners = corners_of(elements, x);
+    const ClosestPoints points = closest_points(elements.edges, corners);
+    if (!points.facing || !(points.squared > 0.0)) return false;
+    const Vec3 shift = combine(elements, points.weight, motion);
+    if (!(least_squared(points.offset, shift) <= reach * reach)) return false;
+    if (near_at_rest(elements)) return false;
+    const double distance = std::sqrt(points.squared);
+    pair = {elements, points.weight, points.offset / distance, distance};
+    return true;
+}
+
+void SelfProximity::find(const Points& x, const Points& motion, double reach, int threads) {
+    m_faces.find(x, motion, reach, threads);
+    m_bounds.update(m_elements, x, motion);
+    const auto& faces = m_faces.found();
+    const int count = static_cast<int>(faces.size());
+    const auto find_part = [&](int part, std::vector<SelfPair>& out) {
+        const int end = std::min(count, (part + 1) * faces_per_part);
+        for (int k = part * faces_per_part; k < end; ++k) {
+            const auto [f, g] = faces[static_cast<size_t>(k)];
+            const double far = reach + m_bounds.approach(f, g);
+            m_elements.visit(f, g, [&](const ElementPair& elements) {
+                SelfPair pair;
+                if (m_bounds.may_be_near(elements, x, far) &&
+                    is_near(elements, x, motion, reach, pair))
+                    out.push_back(pair);
+            });
+        }
+    };
+    gather_in_order((count + faces_per_part - 1) / faces_per_part, threads, m_parts, m_pairs,
+                    find_part);
+}
+
+}  // namespace cloth

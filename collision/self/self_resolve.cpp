@@ -1,0 +1,107 @@
+#include "collision/self/self_resolve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "collision/proximity/direction.h"
+#include "collision/response/resolve.h"
+#include "data/core/garment_pieces.h"
+
+namespace cloth {
+namespace {
+
+constexpr int sweeps = 40;              // of PlanePush in each round
+constexpr double most = 3.0;            // see PlanePush::solve
+constexpr double growth = 0.03;         // of edges near what is pushed, as in ContactProjection
+constexpr double hold_distance = 1e-2;  // m: vertices further from obstacles need no holding
+constexpr double gap_share = 0.25;      // of the thickness, at which layers are left
+constexpr int zone_rounds = 50;         // each joins zones that touch, so they end
+constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
+                                        // nothing cannot be told from elements that touch
+
+}  // namespace
+
+SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& settings)
+    : m_settings(settings),
+      m_crossings(garment),
+      m_push(garment.inverse_masses()),
+      m_guard(garment, growth),
+      m_zones(garment),
+      m_rest(garment.rest().vertices),
+      m_piece(garment_pieces(garment)),
+      m_held(static_cast<size_t>(garment.vertex_count()), 0) {
+    check_self_contact(settings);
+}
+
+SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts& contacts,
+                                        double distance, Points& x) {
+    SelfResolveReport report;
+    m_moved.clear();
+    m_pairs.clear();
+    if (m_settings.rounds == 0) return report;
+    report.left = report.crossings =
+        static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
+    if (report.left == 0) return report;
+    m_before = x;
+    m_guard.begin_frame(x);
+    while (report.left > 0 && report.rounds < m_settings.rounds) {
+        ++report.rounds;
+        m_pairs.insert(m_pairs.end(), m_crossings.found().begin(), m_crossings.found().end());
+        push(contacts, distance, x);
+        report.left = static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
+    }
+    if (report.left > 0) {
+        m_zones.begin(x);
+        for (int round = 0; report.left > 0 && round < zone_rounds; ++round) {
+            m_zones.merge(m_crossings.found());
+            m_zones.apply(x0, round < turning_rounds, x);
+            report.left = static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
+        }
+        report.rigid = m_zones.vertex_count();
+    }
+    note_moved(x);
+    return report;
+}
+
+/// Half of what elements of one piece are apart at rest, where that is less: a fine mesh must not
+/// be blown up.
+double SelfResolver::gap(const ElementPair& elements) const {
+    const double wanted = gap_share * m_settings.thickness;
+    if (m_piece[static_cast<size_t>(elements.vertex[0])] !=
+        m_piece[static_cast<size_t>(elements.vertex[3])])
+        return wanted;
+    const double rest =
+        std::sqrt(closest_points(elements.edges, corners_of(elements, m_rest)).squared);
+    return std::min(wanted, 0.5 * rest);
+}
+
+void SelfResolver::push(const SurfaceContacts& contacts, double distance, Points& x) {
+    m_push.clear();
+    for (const SelfPair& pair : m_pairs)
+        m_push.add_pair(pair.elements.vertex, pair.weight, pair.normal, gap(pair.elements));
+    hold_vertices(contacts, distance);
+    m_guard.add_planes(x, m_push);
+    m_push.solve(sweeps, most, x);
+}
+
+/// Planes that keep the vertices of the pairs outside of obstacles.
+void SelfResolver::hold_vertices(const SurfaceContacts& contacts, double distance) {
+    if (contacts.obstacle.empty()) return;
+    std::fill(m_held.begin(), m_held.end(), 0);
+    for (const SelfPair& pair : m_pairs)
+        for (const int i : pair.elements.vertex) {
+            char& held = m_held[static_cast<size_t>(i)];
+            if (held || !contacts.has(i) || !(contacts.distance[i] < hold_distance)) continue;
+            held = 1;
+            const Vec3 normal = outward(contacts, i, m_before);
+            m_push.add({i, i, i}, {1.0, 0.0, 0.0}, normal,
+                       normal.dot(contacts.point1.row(i)) + distance);
+        }
+}
+
+void SelfResolver::note_moved(const Points& x) {
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        if (x.row(i) != m_before.row(i)) m_moved.push_back(static_cast<int>(i));
+}
+
+}  // namespace cloth

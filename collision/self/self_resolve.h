@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "collision/proximity/proximity.h"
+#include "collision/response/plane_push.h"
+#include "collision/response/strain_limiter.h"
+#include "collision/self/rigid_impact_zones.h"
+#include "collision/self/self_contact_settings.h"
+#include "collision/self/self_crossings.h"
+
+namespace cloth {
+
+/// What SelfResolver did in one step.
+struct SelfResolveReport {
+    int crossings = 0;  ///< pairs of elements that would have passed through each other
+    int rounds = 0;     ///< of pushes
+    int rigid = 0;      ///< vertices that had to move like rigid bodies in the end
+    int left = 0;       ///< pairs that still pass, such as between pins that cross
+};
+
+/// Contact projection of a step against layers that pass through each other: pairs of elements that
+/// would do so between t and t + dt are put back on the side that they come from.
+///
+///     SelfResolver resolver(garment, settings);
+///     resolver.resolve(state.x, contacts, 5e-4, x);
+///
+/// First by the smallest motion, weighted with the masses, that keeps linear momentum, holds
+/// vertices outside of obstacles and does not stretch the cloth; what is not solved so within the
+/// rounds moves rigidly for this step. Cloth that does not cross keeps its bits. What is tangled at
+/// t stays as it is: its elements are not taken apart, and do not get deeper.
+class SelfResolver {
+ public:
+    /// @throws ArgumentError if a setting is out of range
+    SelfResolver(const Garment& garment, const SelfContactSettings& settings);
+
+    /// @param x0        |V| x 3 (m): positions at t, which say what side is right
+    /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt, or empty
+    /// @param distance  of vertices from the obstacles (m) that is held
+    /// @param x         |V| x 3 (m): positions at t + dt; pinned vertices do not move
+    SelfResolveReport resolve(const Points& x0, const SurfaceContacts& contacts, double distance,
+                              Points& x);
+
+    /// Vertices that the last resolve() may have moved, each once.
+    const std::vector<int>& moved() const { return m_moved; }
+
+ private:
+    void push(const SurfaceContacts& contacts, double distance, Points& x);
+    void hold_vertices(const SurfaceContacts& contacts, double distance);
+    double gap(const ElementPair& elements) const;
+    void note_moved(const Points& x);
+
+    SelfContactSettings m_settings;
+    SelfCrossings m_crossings;
+    PlanePush m_push;
+    StrainLimiter m_guard;
+    RigidImpactZones m_zones;
+    Points m_rest;  ///< |V| x 3 (m)
+    std::vector<int> m_piece;
+    std::vector<SelfPair> m_pairs;  ///< of all rounds
+    std::vector<char> m_held;       ///< |V|
+    std::vector<int> m_moved;
+    Points m_before;  ///< |V| x 3 (m): where the step would have ended
+};
+
+}  // namespace cloth

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "data/core/mesh.h"
+
+namespace cloth {
+
+/// The part of a surface where `level` (|V|, linear on each triangle) is negative, cut along its
+/// zero line.
+TriMesh cut_surface(const TriMesh& mesh, const VectorX& level);
+
+/// The connected part of a surface whose vertex is nearest to `p`, without loose vertices.
+TriMesh keep_component(const TriMesh& mesh, const Vec3& p);
+
+/// Remeshes an open surface to `target_vertices` (within 1.5 %) triangles that are as equal as they
+/// can be: split, collapse, flip and relax (Botsch and Kobbelt 2004, CGAL), then smoothing within
+/// the surface until every angle is above 25 degrees, or as near as it gets.
+/// Borders stay where they are, with new vertices.
+TriMesh remesh(const TriMesh& surface, int target_vertices);
+
+}  // namespace cloth

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "data/core/fabric.h"
+#include "data/core/mesh.h"
+
+namespace cloth {
+
+/// Two faces that share the edge v[0]-v[1]; v[2] and v[3] are the corners opposite to it.
+///
+///        v2
+///       /  \        face (v0, v1, v2) and face (v1, v0, v3), both counter-clockwise
+///     v0 -- v1
+///       \  /
+///        v3
+using Hinge = std::array<int, 4>;
+
+/// Everything about a piece of cloth that never changes: rest mesh, topology, masses, pins, fabric.
+/// Built once and shared by const reference; what changes lives in ClothState.
+class Garment {
+ public:
+    /// @param rest_angles  true: the rest mesh's own dihedral angles are the rest angles; false:
+    /// flat
+    /// @throws ArgumentError if the mesh is unusable, a pin is out of range or a fabric constant is
+    ///         not positive and finite
+    Garment(std::string name, TriMesh rest, Fabric fabric, std::vector<int> pins = {},
+            bool rest_angles = false);
+
+    const std::string& name() const { return m_name; }
+    const TriMesh& rest() const { return m_rest; }
+    const Fabric& fabric() const { return m_fabric; }
+    const std::vector<int>& pins() const { return m_pins; }             ///< sorted, unique
+    const std::vector<char>& is_pinned() const { return m_is_pinned; }  ///< |V|
+    const std::vector<std::array<int, 2>>& edges() const { return m_edges; }
+    const std::vector<Hinge>& hinges() const { return m_hinges; }
+    const VectorX& hinge_rest_angles() const { return m_hinge_rest_angles; }  ///< |hinges| (rad)
+    bool rest_angles_from_mesh() const { return m_rest_angles_from_mesh; }    ///< else flat
+    const VectorX& face_areas() const { return m_face_areas; }                ///< |F| (m^2)
+    const VectorX& masses() const { return m_masses; }                        ///< |V| (kg)
+    VectorX inverse_masses() const;  ///< |V| (1/kg), 0 for pinned vertices
+    Eigen::Index vertex_count() const { return m_rest.vertices.rows(); }
+    Eigen::Index face_count() const { return m_rest.faces.rows(); }
+    double mean_edge_length() const { return m_mean_edge_length; }  ///< at rest (m)
+
+    /// The same garment of another fabric.
+    Garment with_fabric(const Fabric& fabric) const;
+    /// The same garment with other pinned vertices.
+    Garment with_pins(std::vector<int> pins) const;
+
+ private:
+    std::string m_name;
+    TriMesh m_rest;
+    Fabric m_fabric;
+    bool m_rest_angles_from_mesh;
+    std::vector<int> m_pins;
+    std::vector<char> m_is_pinned;
+    std::vector<std::array<int, 2>> m_edges;
+    std::vector<Hinge> m_hinges;
+    VectorX m_hinge_rest_angles;
+    VectorX m_face_areas;
+    VectorX m_masses;
+    double m_mean_edge_length = 0.0;
+};
+
+/// Signed dihedral angle of a hinge (rad): 0 when flat, positive when the faces fold so that their
+/// normals part. Grinspun et al. 2003, section 3: theta = atan2(e . (n0 x n1), n0 . n1).
+double dihedral_angle(const Points& x, const Hinge& hinge);
+
+}  // namespace cloth

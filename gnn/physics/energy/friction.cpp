@@ -1,0 +1,87 @@
+#include "gnn/physics/energy/friction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+
+namespace {
+
+Vec3 mean_normal(const Vec3& normal0, const Vec3& normal1) {
+    const Vec3 sum = normal0 + normal1;
+    const double length = sum.norm();
+    return length > 1e-6 ? Vec3(sum / length) : normal1;
+}
+
+/// The two estimates of FrictionEnergy's comment (N).
+/// @param depth   how far the vertex is inside the contact distance at t (m)
+double normal_force(double mass, const Vec3& gravity, const Vec3& normal, double depth,
+                    const FrictionSettings& settings) {
+    const double carried = mass * std::max(0.0, -normal.dot(gravity));
+    const double limit = settings.pressure_limit * mass * gravity.norm();
+    const double pressed = 3.0 * settings.contact_weight * std::pow(std::max(0.0, depth), 2);
+    return std::max(carried, std::min(pressed, limit));
+}
+
+}  // namespace
+
+void FrictionEnergy::begin_step(const Garment& garment, const ClothState& state,
+                                const Boundary& boundary, const SurfaceContacts& contacts,
+                                const FrictionSettings& settings) {
+    m_sliders.clear();
+    m_slip = settings.slip;
+    const Eigen::Index count = static_cast<Eigen::Index>(contacts.obstacle.size());
+    for (Eigen::Index i = 0; i < count; ++i) {
+        if (!contacts.has(i) || !(contacts.distance[i] < settings.distance)) continue;
+        const size_t obstacle = static_cast<size_t>(contacts.obstacle[static_cast<size_t>(i)]);
+        const double mu = settings.scale * boundary.obstacles[obstacle].friction;
+        const Vec3 normal = mean_normal(contacts.normal0.row(i), contacts.normal1.row(i));
+        const double depth = settings.contact_distance - contacts.distance[i];
+        const double force =
+            mu * normal_force(garment.masses()[i], boundary.gravity, normal, depth, settings);
+        const Vec3 carried = contacts.point1.row(i) - contacts.point0.row(i);
+        if (force > 0.0)
+            m_sliders.push_back({i, normal, state.x.row(i).transpose() + carried, force});
+    }
+}
+
+static Vec3 tangential(const Vec3& v, const Vec3& normal) {
+    return v - normal.dot(v) * normal;
+}
+
+double FrictionEnergy::value(const Points& x) const {
+    double energy = 0.0;
+    for (const Slider& slider : m_sliders) {
+        const Vec3 slip =
+            tangential(x.row(slider.vertex).transpose() - slider.stick, slider.normal);
+        energy += slider.force * (std::sqrt(m_slip * m_slip + slip.squaredNorm()) - m_slip);
+    }
+    return energy;
+}
+
+double FrictionEnergy::add_gradient(const Points& x, Points& gradient) const {
+    double energy = 0.0;
+    for (const Slider& slider : m_sliders) {
+        const Vec3 slip =
+            tangential(x.row(slider.vertex).transpose() - slider.stick, slider.normal);
+        const double smooth = std::sqrt(m_slip * m_slip + slip.squaredNorm());
+        gradient.row(slider.vertex) += (slider.force / smooth) * slip.transpose();
+        energy += slider.force * (smooth - m_slip);
+    }
+    return energy;
+}
+
+void FrictionEnergy::add_hessian(const Points& x, const BlockPattern& pattern,
+                                 double* values) const {
+    for (const Slider& slider : m_sliders) {
+        const Vec3 slip =
+            tangential(x.row(slider.vertex).transpose() - slider.stick, slider.normal);
+        const double smooth = std::sqrt(m_slip * m_slip + slip.squaredNorm());
+        const Eigen::Matrix3d tangent =
+            Eigen::Matrix3d::Identity() - slider.normal * slider.normal.transpose();
+        add_block(values, pattern.diagonal(slider.vertex),
+                  slider.force / smooth * (tangent - slip * slip.transpose() / (smooth * smooth)));
+    }
+}
+
+}  // namespace cloth

@@ -1,0 +1,200 @@
+#include "gnn/physics/energy/incremental_potential.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "data/core/errors.h"
+
+namespace cloth {
+
+namespace {
+
+constexpr int separating_sweeps = 10;  // of a guess; what is left is the solver's
+
+void require_rows(const char* name, Eigen::Index rows, Eigen::Index expected) {
+    if (rows != expected)
+        throw ArgumentError(name,
+                            "has " + std::to_string(rows) + " rows where the garment has " +
+                                std::to_string(expected) + " vertices",
+                            "pass one row per vertex of the garment");
+}
+
+void require_setting(const char* name, double value, bool zero_allowed) {
+    if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && !zero_allowed))
+        throw ArgumentError(std::string("PotentialSettings.") + name,
+                            std::to_string(value) + " is out of range",
+                            "see the range in the comment of PotentialSettings");
+}
+
+void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, const Garment& garment) {
+    for (const RidgeContact& ridge : contacts.ridges)
+        if (ridge.face < 0 || ridge.face >= garment.face_count())
+            throw ArgumentError("contacts.ridges",
+                                "names face " + std::to_string(ridge.face) + " of " +
+                                    std::to_string(garment.face_count()),
+                                "find the ridges with the finder of this garment");
+    if (contacts.obstacle.empty()) return;
+    const Eigen::Index vertices = garment.vertex_count();
+    require_rows("contacts.obstacle", static_cast<Eigen::Index>(contacts.obstacle.size()),
+                 vertices);
+    require_rows("contacts.point0", contacts.point0.rows(), vertices);
+    require_rows("contacts.point1", contacts.point1.rows(), vertices);
+    require_rows("contacts.normal0", contacts.normal0.rows(), vertices);
+    require_rows("contacts.normal1", contacts.normal1.rows(), vertices);
+    require_rows("contacts.distance", contacts.distance.rows(), vertices);
+    for (int obstacle : contacts.obstacle)
+        if (obstacle >= static_cast<int>(obstacles))
+            throw ArgumentError(
+                "contacts.obstacle",
+                "names obstacle " + std::to_string(obstacle) + " of " + std::to_string(obstacles),
+                "query the contacts with the boundary of this step");
+}
+
+}  // namespace
+
+IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSettings settings)
+    : m_garment(&garment),
+      m_settings(settings),
+      m_pattern(std::make_shared<const BlockPattern>(garment)),
+      m_strain(garment),
+      m_bending(garment),
+      m_gravity(garment),
+      m_inertia(garment),
+      m_ridges(garment),
+      m_self_contact(garment, settings.self_contact) {
+    require_setting("contact_distance", settings.contact_distance, true);
+    require_setting("contact_weight", settings.contact_weight, true);
+    require_setting("ridge_distance", settings.ridge_distance, true);
+    require_setting("friction_scale", settings.friction_scale, true);
+    require_setting("friction_distance", settings.friction_distance, true);
+    require_setting("friction_slip", settings.friction_slip, false);
+    require_setting("friction_limit", settings.friction_limit, true);
+}
+
+void IncrementalPotential::begin_step(const ClothState& state, const Boundary& boundary,
+                                      const SurfaceContacts& contacts, double dt,
+                                      const InertialStep* inertia) {
+    const Eigen::Index count = m_garment->vertex_count();
+    if (!(dt > 0.0) || !std::isfinite(dt))
+        throw ArgumentError("dt", std::to_string(dt) + " is no time step", "pass seconds, above 0");
+    require_rows("state.x", state.x.rows(), count);
+    require_rows("state.v", state.v.rows(), count);
+    if (boundary.accelerations.rows() > 0)
+        require_rows("boundary.accelerations", boundary.accelerations.rows(), count);
+    validate_contacts(contacts, boundary.obstacles.size(), *m_garment);
+
+    m_dt = dt;
+    m_contacts = contacts;
+    m_inertial_dt = inertia ? inertia->dt : dt;
+    m_inertia.begin_step(state, dt, inertia);
+    m_gravity.begin_step(boundary.gravity, boundary.accelerations);
+    m_contact.begin_step(contacts, m_settings.contact_distance);
+    m_ridges.begin_step(contacts, m_settings.ridge_distance);
+    m_friction.begin_step(
+        *m_garment, state, boundary, contacts,
+        {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip,
+         m_settings.contact_distance, m_settings.contact_weight, m_settings.friction_limit});
+    m_self_contact.begin_step(state, dt);
+    m_force_scale = norm_of_forces_at(state);
+}
+
+void IncrementalPotential::separate_self_contact(Points& guess) const {
+    if (m_self_contact.pairs().empty()) return;
+    for (int sweep = 0; sweep < separating_sweeps; ++sweep) {
+        m_self_contact.separate(guess);
+        lift_off_obstacles(guess);
+    }
+}
+
+void IncrementalPotential::lift_off_obstacles(Points& x) const {
+    for (size_t k = 0; k < m_contacts.obstacle.size(); ++k) {
+        const Eigen::Index i = static_cast<Eigen::Index>(k);
+        if (!m_contacts.has(i) || m_garment->is_pinned()[k]) continue;
+        const Eigen::RowVector3d normal = m_contacts.normal1.row(i);
+        const double depth =
+            m_settings.contact_distance - normal.dot(x.row(i) - m_contacts.point1.row(i));
+        if (depth > 0.0) x.row(i) += depth * normal;
+    }
+}
+
+/// At least 1 % of the garment's weight on Earth: the residual stays defined for cloth at rest
+/// without gravity and for cloth at the top of a throw, where inertia and gravity cancel.
+double IncrementalPotential::norm_of_forces_at(const ClothState& state) const {
+    const VectorX& stiffness = m_inertia.stiffness();
+    double forces = 0.0, weights = 0.0;
+    for (Eigen::Index i = 0; i < m_garment->vertex_count(); ++i) {
+        if (m_garment->is_pinned()[static_cast<size_t>(i)]) continue;
+        forces += (stiffness[i] * (state.x.row(i) - m_inertia.target().row(i)) -
+                   m_gravity.forces().row(i))
+                      .squaredNorm();
+        weights += std::pow(9.81 * m_garment->masses()[i], 2);
+    }
+    const double scale = std::max(std::sqrt(forces), 0.01 * std::sqrt(weights));
+    return scale > 0.0 ? scale : 1.0;
+}
+
+EnergyTerms IncrementalPotential::terms(const Points& x) const {
+    EnergyTerms terms;
+    terms.strain = m_strain.value(x);
+    terms.bending = m_bending.value(x);
+    terms.gravity = m_gravity.value(x);
+    terms.inertia = m_inertia.value(x);
+    terms.contact = m_contact.value(x, m_settings.contact_weight) +
+                    m_ridges.value(x, m_settings.contact_weight);
+    terms.friction = m_friction.value(x);
+    terms.self_contact = m_self_contact.value(x);
+    return terms;
+}
+
+double IncrementalPotential::value(const Points& x) const {
+    return terms(x).total();
+}
+
+double IncrementalPotential::value_gradient(const Points& x, Points& gradient) const {
+    EnergyTerms terms;
+    gradient.setZero(x.rows(), 3);
+    terms.strain = m_strain.add_gradient(x, gradient);
+    terms.bending = m_bending.add_gradient(x, gradient);
+    terms.gravity = m_gravity.add_gradient(x, gradient);
+    terms.inertia = m_inertia.add_gradient(x, gradient);
+    terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient) +
+                    m_ridges.add_gradient(x, m_settings.contact_weight, gradient);
+    terms.friction = m_friction.add_gradient(x, gradient);
+    terms.self_contact = m_self_contact.add_gradient(x, gradient);
+    mask_pins(gradient);
+    return terms.total();
+}
+
+void IncrementalPotential::elastic_gradient(const Points& x, Points& gradient) const {
+    gradient.setZero(x.rows(), 3);
+    m_strain.add_gradient(x, gradient);
+    m_bending.add_gradient(x, gradient);
+    mask_pins(gradient);
+}
+
+void IncrementalPotential::internal_forces(const Points& x, Points& forces) const {
+    forces.setZero(x.rows(), 3);
+    m_strain.add_gradient(x, forces);
+    m_bending.add_gradient(x, forces);
+    forces = -forces;
+}
+
+void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
+                                   HessianKind kind) const {
+    m_pattern->reset(hessian);
+    double* values = hessian.valuePtr();
+    m_strain.add_hessian(x, *m_pattern, kind, values);
+    m_bending.add_hessian(x, *m_pattern, kind, values);
+    m_inertia.add_hessian(*m_pattern, values);
+    m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
+    m_ridges.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
+    m_friction.add_hessian(x, *m_pattern, values);
+    m_self_contact.add_hessian(x, hessian);
+}
+
+void IncrementalPotential::mask_pins(Points& gradient) const {
+    for (int pin : m_garment->pins()) gradient.row(pin).setZero();
+}
+
+}  // namespace cloth

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "gnn/physics/energy/incremental_potential.h"
+
+namespace cloth {
+
+/// What the obstacles add to the constant matrix of the quasi-Newton method: symmetric positive
+/// semi-definite blocks for each vertex or face in contact or held by friction,
+///
+///     contact    6 w depth n n'                         depth = eps - d > 0
+///     ridge      the same, shared out over the corners of a face
+///     friction   mu N / sqrt(s^2 + |u|^2) (I - n n')
+///
+/// Contact is flat at depth 0, where the starting guess leaves the vertices, so the tangent
+/// stiffness alone lets the next step fall through the surface. Two remedies: vertices that a plain
+/// step would press deeper get the stiffness of the depth they are heading for (up to a limit), and
+/// a trial point is never deeper than a limit beyond the point it comes from.
+///
+/// Contact of the garment with itself adds, with the same remedies, a term of rank one for each
+/// pair of elements that is near:
+///
+///     6 w depth c c'         c = (weight n) of the pair's four vertices
+class ContactHessian {
+ public:
+    /// Takes the contacts and sliders of this step. @param row_of  |V|: free row, -1 for a pin
+    void begin_step(const IncrementalPotential& potential, const std::vector<int>& row_of);
+
+    /// Linearises at x (|V| x 3).
+    void linearise(const IncrementalPotential& potential, const Points& x);
+
+    /// Stiffens contacts that `step` (free, n x 3), a step without these blocks, would press
+    /// deeper. Returns whether any block is not zero.
+    bool anticipate(const Points& step);
+
+    /// product += blocks * direction (free, n x 3).
+    void add_product(const Points& direction, Points& product) const;
+
+    /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
+    void limit_depth(Points& trial) const;
+
+    /// Whether any obstacle, or any other layer of the cloth, is near enough to matter.
+    bool active() const {
+        return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() || !m_layers.empty();
+    }
+
+ private:
+    struct Contact {
+        Eigen::Index vertex;
+        int row;
+        Vec3 normal;
+        double surface;          ///< eps + p . n: depth is surface - x . n (m)
+        double depth = 0.0;      ///< at the point of linearisation, negative outside (m)
+        double stiffness = 0.0;  ///< (N/m)
+    };
+    struct Ridge {
+        std::array<int, 3> vertex, row;
+        std::array<double, 3> weight;
+        Vec3 normal;
+        double surface;
+        double depth = 0.0;
+        double stiffness = 0.0;
+    };
+    struct Slider {
+        int row;
+        Vec3 normal;
+        double stiffness = 0.0;  ///< (N/m)
+    };
+
+    struct Layers {
+        std::array<int, 4> row;        ///< -1: a pin
+        std::array<double, 4> weight;  ///< 0 for a pin
+        Vec3 normal;
+        double contact;          ///< w of this pair (N/m^2)
+        double depth = 0.0;      ///< (m)
+        double stiffness = 0.0;  ///< (N/m)
+
+        double along(const Points& direction) const;  ///< of a free array (n x 3)
+    };
+
+    void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
+    static double secant(double weight, double before, double after);
+    static double rise(const Ridge& ridge, const Points& step);
+
+    double m_weight = 0.0;  ///< w (N/m^2)
+    std::vector<Contact> m_contacts;
+    std::vector<Ridge> m_ridges;
+    std::vector<Slider> m_sliders;
+    std::vector<size_t> m_slider_index;  ///< of the potential's friction().sliders()
+    std::vector<Layers> m_layers;        ///< the potential's self_contact().pairs()
+    const SelfContactEnergy* m_self = nullptr;
+    Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there are layers
+};
+
+}  // namespace cloth

@@ -1,0 +1,179 @@
+#include "gnn/physics/solver/quasi_newton.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "data/core/errors.h"
+
+namespace cloth {
+namespace {
+
+constexpr double sufficient_decrease = 1e-4;  // of Armijo's rule
+constexpr int max_backtracks = 20;
+
+double dot(const Points& a, const Points& b) {
+    return a.cwiseProduct(b).sum();
+}
+
+void check_range(const char* name, double value, double lowest, double highest) {
+    if (value >= lowest && value <= highest) return;
+    throw ArgumentError(std::string("QuasiNewtonSettings::") + name,
+                        std::to_string(value) + " is out of range",
+                        "choose from " + std::to_string(lowest) + " to " + std::to_string(highest));
+}
+
+/// The energies of the last iterations, and what became of them as a distance.
+class Gain {
+ public:
+    Gain(double dt, double mass) : m_scale(dt * std::sqrt(2.0 / mass)) {}
+
+    /// @return  see MinimiseReport::gain (m)
+    double after(double energy) {
+        double& oldest = m_energies[static_cast<size_t>(m_count++) % m_energies.size()];
+        const double before = std::exchange(oldest, energy);
+        if (m_count <= span) return std::numeric_limits<double>::infinity();
+        return m_scale * std::sqrt(std::max(0.0, before - energy));
+    }
+
+ private:
+    static constexpr int span = 5;  // iterations
+    double m_scale;
+    int m_count = 0;
+    std::array<double, span> m_energies = {};
+};
+
+// Minimum of the parabola through E(0), its slope and E(step), kept within a tenth and a half.
+double shorter_step(double step, double energy, double slope, double trial_energy) {
+    const double parabola = -0.5 * slope * step * step / (trial_energy - energy - slope * step);
+    return std::isfinite(parabola) ? std::clamp(parabola, 0.1 * step, 0.5 * step) : 0.1 * step;
+}
+
+}  // namespace
+
+QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
+    : m_settings(settings), m_matrix(garment) {
+    check_range("iterations", settings.iterations, 0, 10000);
+    check_range("tolerance", settings.tolerance, 0.0, 1e6);
+    check_range("least_gain", settings.least_gain, 0.0, 1.0);
+    check_range("least_iterations", settings.least_iterations, 0, 10000);
+    check_range("history", settings.history, 0, 50);
+    check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
+    const Eigen::Index free = m_matrix.free_count();
+    m_history.allocate(settings.history, free);
+    for (Points* array : {&m_gradient, &m_next_gradient, &m_direction, &m_right_side, &m_gathered,
+                          &m_preconditioned})
+        array->resize(free, 3);
+}
+
+void QuasiNewton::precondition(const Points& gradient, Points& out) const {
+    m_matrix.gather(gradient, m_gathered);
+    m_matrix.solve(m_gathered, m_preconditioned);
+    m_matrix.scatter(m_preconditioned, out);
+}
+
+MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x) {
+    MinimiseReport report;
+    if (!start(potential, x, report)) {
+        report.finite = false;
+        report.residual = std::numeric_limits<double>::quiet_NaN();
+        return report;
+    }
+    const auto met = [&] {
+        return report.residual <= m_settings.tolerance || report.gain < m_settings.least_gain;
+    };
+    Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
+    gain.after(report.energy);
+    while (report.iterations < m_settings.iterations) {
+        if (met() && report.iterations >= m_settings.least_iterations) break;
+        if (!iterate(potential, x, report)) {
+            report.gain = 0.0;
+            break;
+        }
+        report.gain = gain.after(report.energy);
+    }
+    report.converged = met();
+    return report;
+}
+
+bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
+                        MinimiseReport& report) {
+    const Garment& garment = potential.garment();
+    if (!m_matrix.fits(garment) || x.rows() != garment.vertex_count() || !x.allFinite())
+        return false;
+    if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
+    m_history.clear();
+    m_contacts.begin_step(potential, m_matrix.row_of());
+    report.energy = potential.value_gradient(x, m_all_gradient);
+    report.evaluations = 1;
+    m_matrix.gather(m_all_gradient, m_gradient);
+    update_residual(potential, report);
+    return std::isfinite(report.energy) && m_gradient.allFinite();
+}
+
+void QuasiNewton::update_residual(const IncrementalPotential& potential,
+                                  MinimiseReport& report) const {
+    const double scale = std::max(potential.force_scale(), std::numeric_limits<double>::min());
+    report.residual = m_gradient.norm() / scale;
+}
+
+// One step; false where E cannot be lowered any further in double precision.
+bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
+                          MinimiseReport& report) {
+    find_direction(potential, x);
+    if (!line_search(potential, x, report)) {
+        if (m_history.empty()) return false;
+        m_history.clear();
+        find_direction(potential, x);
+        if (!line_search(potential, x, report)) return false;
+    }
+    ++report.iterations;
+    m_history.push(m_direction, m_gradient, m_next_gradient);
+    m_gradient.swap(m_next_gradient);
+    update_residual(potential, report);
+    return true;
+}
+
+void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
+    m_right_side = -m_gradient;
+    m_history.first_loop(m_right_side);
+    m_contacts.linearise(potential, x);
+    if (m_settings.contact_cg_iterations > 0 && m_contacts.active())
+        m_matrix.solve(m_right_side, m_contacts, m_settings.contact_cg_iterations, m_direction);
+    else
+        m_matrix.solve(m_right_side, m_direction);
+    m_history.second_loop(m_direction);
+}
+
+// Moves x and leaves the step taken in m_direction, or leaves x as it is.
+bool QuasiNewton::line_search(const IncrementalPotential& potential, Points& x,
+                              MinimiseReport& report) {
+    const double slope = dot(m_gradient, m_direction);
+    // Below this the decrease drowns in the rounding of E.
+    const double resolution = std::numeric_limits<double>::epsilon() * std::abs(report.energy);
+    if (!(-slope > resolution)) return false;
+    double step = 1.0;
+    for (int k = 0; k < max_backtracks; ++k) {
+        m_trial = x;
+        m_matrix.add_scaled(step, m_direction, m_trial);
+        m_contacts.limit_depth(m_trial);
+        const double energy = potential.value_gradient(m_trial, m_all_gradient);
+        ++report.evaluations;
+        if (energy <= report.energy + sufficient_decrease * step * slope) {
+            m_matrix.gather(m_all_gradient, m_next_gradient);
+            if (m_next_gradient.allFinite()) {
+                m_matrix.gather_difference(m_trial, x, m_direction);
+                x.swap(m_trial);
+                report.energy = energy;
+                return true;
+            }
+        }
+        step = shorter_step(step, report.energy, slope, energy);
+    }
+    return false;
+}
+
+}  // namespace cloth

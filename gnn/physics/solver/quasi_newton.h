@@ -1,0 +1,99 @@
+#pragma once
+
+#include <limits>
+
+#include "gnn/physics/energy/incremental_potential.h"
+#include "gnn/physics/solver/lbfgs_history.h"
+#include "gnn/physics/solver/quasi_newton_matrix.h"
+
+namespace cloth {
+
+struct QuasiNewtonSettings {
+    int iterations =
+        10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
+    double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
+    double least_gain = 0.0;   ///< or when MinimiseReport::gain is below this (m), 0 to 1; 0: never
+    int least_iterations = 0;  ///< but not before these, 0 to 10000
+    int history = 8;           ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
+    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
+                                     ///< contact stays out of the matrix
+    PotentialSettings potential;     ///< for steppers, which make the potential themselves
+
+    /// What a simulation should use: ten iterations, and more, up to a hundred, for as long as five
+    /// of them still gain 3 mm (gravity alone gains 11 mm in a frame of 1/30 s). The residual does
+    /// not tell: that of a T-shirt in a jump is as high as that of stiff fabric that falls in slow
+    /// motion, and only the latter needs the iterations.
+    static QuasiNewtonSettings controlled(int least = 10, int most = 100) {
+        QuasiNewtonSettings settings;
+        settings.iterations = most;
+        settings.least_iterations = least;
+        settings.least_gain = 3e-3;
+        return settings;
+    }
+};
+
+/// What one minimisation reached.
+struct MinimiseReport {
+    int iterations = 0;     ///< steps taken
+    int evaluations = 0;    ///< energies (with gradients) computed
+    double energy = 0.0;    ///< E(x) at the end (J)
+    double residual = 0.0;  ///< |gradient| / force_scale() at the end, over the free vertices
+    /// What the last five iterations gained, as a distance (m): dt sqrt(2 (decrease of E) / mass),
+    /// by which the garment as a whole would have to be moved against its inertia for as much
+    /// energy. +inf: there were fewer; 0: E could not be lowered any further.
+    double gain = std::numeric_limits<double>::infinity();
+    bool converged = false;  ///< the tolerance, or the least gain, was met
+    bool finite = true;      ///< false: the energy at the start was not finite, x is as it was
+};
+
+/// Minimises the incremental potential with one constant matrix P (see QuasiNewtonMatrix) in the
+/// Hessian's place, an L-BFGS history that learns the difference, and a backtracking line search
+/// (Liu, Bouaziz and Kavan 2017, "Quasi-Newton methods for real-time simulation of hyperelastic
+/// materials", algorithm 1). Obstacles, which P does not know, come in by a ContactHessian.
+///
+///     QuasiNewton solver(garment, {});
+///     potential.begin_step(state, boundary, contacts, dt);
+///     starting_guess(garment, state, boundary, contacts, dt, contact_distance, x);
+///     MinimiseReport report = solver.minimise(potential, x);
+///
+/// One object serves one thread at a time; after the first call nothing is allocated.
+class QuasiNewton {
+ public:
+    /// @throws ArgumentError if a setting is out of range
+    explicit QuasiNewton(const Garment& garment, QuasiNewtonSettings settings = {});
+
+    const QuasiNewtonSettings& settings() const { return m_settings; }
+    void set_iterations(int iterations) { m_settings.iterations = iterations; }
+    void set_tolerance(double tolerance) { m_settings.tolerance = tolerance; }
+
+    /// Lowers E from the given x (|V| x 3, m) on; rows of pinned vertices stay as they are. A
+    /// potential of another fabric or time step than the last makes P anew; one of other vertices
+    /// or pins is refused like a non-finite one (report.finite is false). Never throws.
+    MinimiseReport minimise(const IncrementalPotential& potential, Points& x);
+
+    /// Makes P for a fabric and a time step (s) ahead of time. False: not positive definite.
+    bool prepare(const Garment& garment, double dt) { return m_matrix.prepare(garment, dt); }
+
+    /// out = P^-1 gradient (|V| x 3, m), zero at pinned vertices. Needs `prepare` or `minimise`
+    /// first.
+    void precondition(const Points& gradient, Points& out) const;
+
+    const QuasiNewtonMatrix& matrix() const { return m_matrix; }
+
+ private:
+    bool start(const IncrementalPotential& potential, const Points& x, MinimiseReport& report);
+    bool iterate(const IncrementalPotential& potential, Points& x, MinimiseReport& report);
+    void find_direction(const IncrementalPotential& potential, const Points& x);
+    bool line_search(const IncrementalPotential& potential, Points& x, MinimiseReport& report);
+    void update_residual(const IncrementalPotential& potential, MinimiseReport& report) const;
+
+    QuasiNewtonSettings m_settings;
+    QuasiNewtonMatrix m_matrix;
+    ContactHessian m_contacts;
+    LbfgsHistory m_history;
+    Points m_all_gradient, m_trial;                                 ///< |V| x 3
+    Points m_gradient, m_next_gradient, m_direction, m_right_side;  ///< free vertices (n x 3)
+    mutable Points m_gathered, m_preconditioned;                    ///< n x 3
+};
+
+}  // namespace cloth

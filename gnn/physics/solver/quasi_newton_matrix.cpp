@@ -1,0 +1,132 @@
+#include "gnn/physics/solver/quasi_newton_matrix.h"
+
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+double dot(const Points& a, const Points& b) {
+    return a.cwiseProduct(b).sum();
+}
+
+bool same_fabric(const Fabric& a, const Fabric& b) {
+    return a.density == b.density && a.mu == b.mu && a.lambda == b.lambda;
+}
+
+// Half the cotangent of the angle at `apex` weighs the edge opposite to it.
+void add_corner(const Points& x, int apex, int i, int j, Triplets& triplets) {
+    const Vec3 a = x.row(i) - x.row(apex);
+    const Vec3 b = x.row(j) - x.row(apex);
+    const double weight = 0.5 * a.dot(b) / a.cross(b).norm();
+    triplets.emplace_back(i, i, weight);
+    triplets.emplace_back(j, j, weight);
+    triplets.emplace_back(i, j, -weight);
+    triplets.emplace_back(j, i, -weight);
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> cotangent_laplacian(const TriMesh& rest) {
+    Triplets triplets;
+    triplets.reserve(static_cast<size_t>(12 * rest.faces.rows()));
+    for (Eigen::Index f = 0; f < rest.faces.rows(); ++f) {
+        for (int corner = 0; corner < 3; ++corner)
+            add_corner(rest.vertices, rest.faces(f, corner), rest.faces(f, (corner + 1) % 3),
+                       rest.faces(f, (corner + 2) % 3), triplets);
+    }
+    Eigen::SparseMatrix<double> laplacian(rest.vertices.rows(), rest.vertices.rows());
+    laplacian.setFromTriplets(triplets.begin(), triplets.end());
+    return laplacian;
+}
+
+QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
+    : m_vertex_count(garment.vertex_count()), m_pins(garment.pins()) {
+    Triplets selection;
+    m_row_of.assign(static_cast<size_t>(m_vertex_count), -1);
+    for (int vertex = 0; vertex < m_vertex_count; ++vertex) {
+        if (garment.is_pinned()[static_cast<size_t>(vertex)]) continue;
+        m_row_of[static_cast<size_t>(vertex)] = static_cast<int>(m_free.size());
+        selection.emplace_back(static_cast<int>(m_free.size()), vertex, 1.0);
+        m_free.push_back(vertex);
+    }
+    Eigen::SparseMatrix<double> select(free_count(), m_vertex_count);
+    select.setFromTriplets(selection.begin(), selection.end());
+    m_laplacian = select * cotangent_laplacian(garment.rest()) * select.transpose();
+    for (Points* array : {&m_residual, &m_preconditioned, &m_direction, &m_product, &m_p_direction})
+        array->resize(free_count(), 3);
+}
+
+bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
+    if (m_dt == dt && same_fabric(m_fabric, garment.fabric())) return true;
+    m_dt = 0.0;
+    m_matrix = garment.fabric().longitudinal() * m_laplacian;
+    for (Eigen::Index row = 0; row < free_count(); ++row)
+        m_matrix.coeffRef(row, row) +=
+            garment.masses()[m_free[static_cast<size_t>(row)]] / (dt * dt);
+    if (free_count() > 0 && !m_factor.factorise(m_matrix)) return false;
+    m_fabric = garment.fabric();
+    m_dt = dt;
+    return true;
+}
+
+bool QuasiNewtonMatrix::fits(const Garment& garment) const {
+    return garment.vertex_count() == m_vertex_count && garment.pins() == m_pins;
+}
+
+void QuasiNewtonMatrix::gather(const Points& all, Points& free) const {
+    free.resize(free_count(), 3);
+    for (Eigen::Index row = 0; row < free_count(); ++row)
+        free.row(row) = all.row(m_free[static_cast<size_t>(row)]);
+}
+
+void QuasiNewtonMatrix::gather_difference(const Points& a, const Points& b, Points& free) const {
+    free.resize(free_count(), 3);
+    for (Eigen::Index row = 0; row < free_count(); ++row) {
+        const int vertex = m_free[static_cast<size_t>(row)];
+        free.row(row) = a.row(vertex) - b.row(vertex);
+    }
+}
+
+void QuasiNewtonMatrix::scatter(const Points& free, Points& all) const {
+    all.setZero(m_vertex_count, 3);
+    add_scaled(1.0, free, all);
+}
+
+void QuasiNewtonMatrix::add_scaled(double scale, const Points& free, Points& all) const {
+    for (Eigen::Index row = 0; row < free_count(); ++row)
+        all.row(m_free[static_cast<size_t>(row)]) += scale * free.row(row);
+}
+
+void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int iterations,
+                              Points& out) const {
+    m_residual = b;
+    solve(m_residual, m_preconditioned);
+    if (!contacts.anticipate(m_preconditioned)) {
+        out = m_preconditioned;
+        return;
+    }
+    m_direction = m_preconditioned;
+    // P times the direction follows from the residuals, so that P itself is never multiplied.
+    m_p_direction = m_residual;
+    double power = dot(m_residual, m_preconditioned);
+    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
+    out.setZero(b.rows(), 3);
+    for (int k = 0; power > enough; ++k) {
+        m_product = m_p_direction;
+        contacts.add_product(m_direction, m_product);
+        const double step = power / dot(m_direction, m_product);
+        out += step * m_direction;
+        if (k + 1 >= iterations) break;
+        m_residual -= step * m_product;
+        solve(m_residual, m_preconditioned);
+        const double next_power = dot(m_residual, m_preconditioned);
+        const double beta = next_power / power;
+        power = next_power;
+        m_direction = m_preconditioned + beta * m_direction;
+        m_p_direction = m_residual + beta * m_p_direction;
+    }
+}
+
+}  // namespace cloth

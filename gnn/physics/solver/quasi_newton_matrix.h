@@ -1,0 +1,63 @@
+#pragma once
+
+#include <vector>
+
+#include "gnn/physics/solver/contact_hessian.h"
+#include "gnn/physics/solver/supernodal_cholesky.h"
+
+namespace cloth {
+
+/// Cotangent Laplacian (|V| x |V|, no unit, positive semi-definite): x' L x is the Dirichlet energy
+/// times two. Pinkall and Polthier 1993, equation 7.
+Eigen::SparseMatrix<double> cotangent_laplacian(const TriMesh& rest);
+
+/// The constant matrix of the quasi-Newton method, on the free vertices of a garment, factorised:
+///
+///     P = M / dt^2 + (2 mu + lambda) L,     L: cotangent Laplacian of the rest mesh.
+///
+/// Arrays called "free" have one row per unpinned vertex (n x 3). One object serves one thread.
+class QuasiNewtonMatrix {
+ public:
+    explicit QuasiNewtonMatrix(const Garment& garment);
+
+    /// Factorises P for the garment's masses and fabric and the time step (s), unless that is what
+    /// it holds. False: P is not positive definite in double precision.
+    bool prepare(const Garment& garment, double dt);
+
+    /// Whether a garment has the vertices and pins that this matrix was made for.
+    bool fits(const Garment& garment) const;
+
+    void gather(const Points& all, Points& free) const;
+    /// free = the free rows of a - b.
+    void gather_difference(const Points& a, const Points& b, Points& free) const;
+    /// Rows of pinned vertices are set to zero.
+    void scatter(const Points& free, Points& all) const;
+    /// all += scale * free, at the free vertices.
+    void add_scaled(double scale, const Points& free, Points& all) const;
+
+    /// out = P^-1 b (free).
+    void solve(const Points& b, Points& out) const { m_factor.solve(b, out); }
+
+    /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
+    /// preconditioned by P, each of which costs one solve with P. The blocks anticipate the step
+    /// P^-1 b.
+    void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
+
+    const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
+    Eigen::Index free_count() const { return static_cast<Eigen::Index>(m_free.size()); }
+    Eigen::SparseMatrix<double> matrix() const { return m_matrix; }  ///< P (n x n), both triangles
+
+ private:
+    Eigen::Index m_vertex_count;
+    std::vector<int> m_pins;
+    std::vector<int> m_free;                  ///< vertex of each free row
+    std::vector<int> m_row_of;                ///< |V|
+    Eigen::SparseMatrix<double> m_laplacian;  ///< free rows and columns
+    Eigen::SparseMatrix<double> m_matrix;
+    Fabric m_fabric;
+    double m_dt = 0.0;  ///< 0: nothing factorised yet
+    SupernodalCholesky m_factor;
+    mutable Points m_residual, m_preconditioned, m_direction, m_product, m_p_direction;  ///< n x 3
+};
+
+}  // namespace cloth

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <vector>
+
+#include "data/core/types.h"
+
+namespace cloth {
+
+/// Cholesky factor of a sparse symmetric positive-definite matrix, made for solving many times with
+/// three right-hand sides at once. Columns of equal structure are packed into dense panels of at
+/// most eight columns, and the coordinates of a vertex travel together in one vector register.
+///
+///     SupernodalCholesky factor;
+///     if (factor.factorise(matrix)) factor.solve(b, x);
+///
+/// One object serves one thread at a time: `solve` works in memory of the object.
+class SupernodalCholesky {
+ public:
+    /// Orders and factorises (n x n; the lower triangle is read). False: not positive definite, and
+    /// `solve` must not be called.
+    bool factorise(const Eigen::SparseMatrix<double>& matrix);
+
+    /// x = A^-1 b for three columns (n x 3); b and x may be the same object.
+    void solve(const Points& b, Points& x) const;
+
+    Eigen::Index size() const { return static_cast<Eigen::Index>(m_position.size()); }
+    size_t nonzeros() const { return m_values.size(); }  ///< stored, with the padding of the panels
+
+ private:
+    /// Columns first .. first + width - 1: a dense lower triangle (its diagonal holds reciprocals),
+    /// then the rows below, both row-major with `width` columns.
+    struct Panel {
+        int first, width;
+        int row_count;        ///< rows below the triangle
+        size_t rows_begin;    ///< in m_rows
+        size_t values_begin;  ///< in m_values
+    };
+
+    void build_panels(const Eigen::SparseMatrix<double>& lower);
+    void append_panel(const Eigen::SparseMatrix<double>& lower, int first, int width);
+
+    std::vector<int> m_position;  ///< n: place of each unknown in the elimination order
+    std::vector<Panel> m_panels;
+    std::vector<int> m_rows;
+    std::vector<double> m_values;
+    mutable std::vector<double> m_work;  ///< n x 4: x, y, z, unused
+};
+
+}  // namespace cloth

@@ -1,0 +1,63 @@
+#include "gnn/physics/stepper/guess.h"
+
+#include <cmath>
+
+#include "collision/response/resolve.h"
+
+namespace cloth {
+
+void linear_extrapolation(const ClothState& state, double dt, Points& x) {
+    x = state.x + dt * state.v;
+}
+
+void projected_extrapolation(const ClothState& state, const SurfaceContacts& contacts, double dt,
+                             double contact_distance, Points& x) {
+    linear_extrapolation(state, dt, x);
+    if (!contacts.obstacle.empty()) project_out(contacts, contact_distance, x);
+}
+
+void place_pins(const Garment& garment, const Boundary& boundary, Points& x) {
+    for (size_t k = 0; k < garment.pins().size(); ++k)
+        x.row(garment.pins()[k]) = boundary.pin_targets.row(static_cast<Eigen::Index>(k));
+}
+
+void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                    const SurfaceContacts& contacts, double dt, double contact_distance,
+                    Points& x) {
+    projected_extrapolation(state, contacts, dt, contact_distance, x);
+    place_pins(garment, boundary, x);
+}
+
+namespace {
+
+bool is_finite(const Obstacle& obstacle) {
+    return obstacle.x0.allFinite() && obstacle.x1.allFinite() &&
+           obstacle.x0.rows() == obstacle.x1.rows() && obstacle.pose0.matrix().allFinite() &&
+           obstacle.pose1.matrix().allFinite() && obstacle.half_extents.allFinite() &&
+           std::isfinite(obstacle.radius) && std::isfinite(obstacle.friction);
+}
+
+bool is_finite(const Boundary& boundary) {
+    for (const Obstacle& obstacle : boundary.obstacles)
+        if (!is_finite(obstacle)) return false;
+    return boundary.pin_targets.allFinite() && boundary.gravity.allFinite() &&
+           boundary.accelerations.allFinite();
+}
+
+}  // namespace
+
+bool is_valid_step(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                   double dt) {
+    const Eigen::Index count = garment.vertex_count();
+    const Eigen::Index pins = static_cast<Eigen::Index>(garment.pins().size());
+    const Eigen::Index accelerations = boundary.accelerations.rows();
+    const bool sizes = state.x.rows() == count && state.v.rows() == count &&
+                       boundary.pin_targets.rows() == pins &&
+                       (accelerations == 0 || accelerations == count) &&
+                       (boundary.ignored_limbs.empty() ||
+                        boundary.ignored_limbs.size() == static_cast<size_t>(count));
+    return sizes && std::isfinite(dt) && dt > 0.0 && state.x.allFinite() && state.v.allFinite() &&
+           is_finite(boundary);
+}
+
+}  // namespace cloth

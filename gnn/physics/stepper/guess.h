@@ -1,0 +1,31 @@
+#pragma once
+
+#include "collision/proximity/proximity.h"
+#include "data/core/boundary.h"
+#include "data/core/cloth_state.h"
+
+namespace cloth {
+
+/// x_t + dt v_t (|V| x 3, m), which is 2 x_t - x_{t-1}: no gravity, no pins, no obstacles.
+void linear_extrapolation(const ClothState& state, double dt, Points& x);
+
+/// The linear extrapolation with every vertex that would end closer than `contact_distance` (m) to
+/// the plane of its carried contact (point1, normal1) pushed out along the normal to that distance.
+void projected_extrapolation(const ClothState& state, const SurfaceContacts& contacts, double dt,
+                             double contact_distance, Points& x);
+
+/// Puts the pinned rows of `x` on the boundary's targets (|pins| x 3, in the order of
+/// garment.pins()).
+void place_pins(const Garment& garment, const Boundary& boundary, Points& x);
+
+/// Where every solver and network starts: the projected extrapolation with the pins at their
+/// targets.
+void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                    const SurfaceContacts& contacts, double dt, double contact_distance, Points& x);
+
+/// Whether one step can be made of these: arrays of the garment's sizes, all numbers finite, dt >
+/// 0.
+bool is_valid_step(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                   double dt);
+
+}  // namespace cloth

@@ -1,0 +1,69 @@
+#include "gnn/physics/stepper/relative_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+namespace {
+
+constexpr double reach = 0.05;  // surfaces this near the garment's box count (m)
+
+using Box = Eigen::AlignedBox3d;
+
+Box box_of(const Points& x) {
+    return Box(Vec3(x.colwise().minCoeff()), Vec3(x.colwise().maxCoeff()));
+}
+
+/// The garment and where its mean motion takes it, with some reach.
+Box swept_box(const ClothState& state, const Vec3& shift) {
+    Box box = box_of(state.x);
+    box.extend(Box(box).translate(shift));
+    return Box(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach));
+}
+
+double mesh_motion(const Obstacle& mesh, const Box& box, const Vec3& shift) {
+    if (mesh.x0.rows() != mesh.x1.rows()) return 0.0;
+    double farthest = 0.0;
+    for (Eigen::Index i = 0; i < mesh.x0.rows(); ++i) {
+        const Vec3 from = mesh.x0.row(i), to = mesh.x1.row(i);
+        const double motion = (to - from - shift).squaredNorm();
+        if (motion <= farthest) continue;
+        Box path(from.cwiseMin(to), from.cwiseMax(to));
+        if (box.intersects(path)) farthest = motion;
+    }
+    return std::sqrt(farthest);
+}
+
+/// Of a sphere around a primitive that holds it; a plane does not turn noticeably where cloth is.
+double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift) {
+    const double size = shape.radius + shape.half_extents.norm();
+    const Vec3 from = shape.pose0.translation(), to = shape.pose1.translation();
+    const Box path(from.cwiseMin(to) - Vec3::Constant(size),
+                   from.cwiseMax(to) + Vec3::Constant(size));
+    if (shape.shape != ObstacleShape::plane && !box.intersects(path)) return 0.0;
+    const Eigen::AngleAxisd turn(
+        Eigen::Matrix3d(shape.pose0.linear().transpose() * shape.pose1.linear()));
+    return (to - from - shift).norm() + std::abs(turn.angle()) * size;
+}
+
+}  // namespace
+
+double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
+                       const ClothState& state) {
+    if (state.x.rows() == 0) return 0.0;
+    const Vec3 shift = dt * state.v.colwise().mean().transpose();
+    const Box box = swept_box(state, shift);
+    double farthest = 0.0;
+    for (size_t p = 0; p < garment.pins().size(); ++p) {
+        const Vec3 motion =
+            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) - state.x.row(garment.pins()[p]);
+        farthest = std::max(farthest, (motion - shift).norm());
+    }
+    for (const Obstacle& obstacle : boundary.obstacles)
+        farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
+                                          ? mesh_motion(obstacle, box, shift)
+                                          : primitive_motion(obstacle, box, shift));
+    return farthest;
+}
+
+}  // namespace cloth

@@ -1,0 +1,58 @@
+#include "gnn/physics/stepper/self_contact_projection.h"
+
+#include <algorithm>
+
+#include "collision/response/resolve.h"
+
+namespace cloth {
+namespace {
+
+constexpr int passes = 3;  // layers, obstacles, layers, ...: layers have the last word
+constexpr double fair_depth =
+    1e-4;  // m: vertices less deep in an obstacle are left to the next step
+constexpr int vertex_iterations = 3;  // of push_out_rows
+
+}  // namespace
+
+SelfContactProjection::SelfContactProjection(const Garment& garment,
+                                             const SelfContactSettings& settings)
+    : m_settings(settings), m_pinned(garment.is_pinned()) {
+    check_self_contact(settings);
+    if (settings.on())
+        m_tools.emplace(Tools{SelfResolver(garment, settings), SelfTangles(garment)});
+}
+
+void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const Boundary& boundary,
+                                   double distance, Points& x, SurfaceContacts& contacts,
+                                   StepReport& report) {
+    if (!m_tools || !x.allFinite()) return;
+    m_last = {};
+    const bool obstacles = !boundary.obstacles.empty();
+    for (int pass = 0; pass < passes; ++pass) {
+        const SelfResolveReport resolved =
+            m_tools->resolver.resolve(x0, obstacles ? contacts : m_none, distance, x);
+        m_last.crossings += resolved.crossings;
+        m_last.rounds += resolved.rounds;
+        m_last.rigid = std::max(m_last.rigid, resolved.rigid);
+        m_last.left = resolved.left;
+        if (m_tools->resolver.moved().empty() || !obstacles) break;
+        m_rows = m_tools->resolver.moved();
+        proximity.query_rows(x, m_rows, boundary, contacts, StepEnd::end);
+        const double depth = depth_of_moved(contacts);
+        report.max_penetration = std::max(report.max_penetration, depth);
+        if (depth < fair_depth || pass + 1 == passes) break;
+        push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x, contacts);
+    }
+    const std::vector<Tangle>& tangles = m_tools->tangles.find(x, m_settings.threads);
+    report.tangles = static_cast<int>(tangles.size());
+    if (!tangles.empty()) report.first_tangle = tangles.front().point;
+}
+
+double SelfContactProjection::depth_of_moved(const SurfaceContacts& contacts) {
+    double depth = 0.0;
+    for (const int i : m_rows)
+        if (!m_pinned[static_cast<size_t>(i)]) depth = std::max(depth, -contacts.distance[i]);
+    return depth;
+}
+
+}  // namespace cloth

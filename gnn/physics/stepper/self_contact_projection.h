@@ -1,0 +1,45 @@
+#pragma once
+
+#include <optional>
+
+#include "collision/self/self_resolve.h"
+#include "collision/self/self_tangles.h"
+#include "gnn/stepper.h"
+
+namespace cloth {
+
+/// What a stepper does for self-contact at the end of a step, after its obstacles: layers that
+/// passed through each other are put back, and tangles are counted for the report. Does nothing,
+/// and holds nothing, where self-contact is off.
+class SelfContactProjection {
+ public:
+    /// @throws ArgumentError if a setting is out of range
+    SelfContactProjection(const Garment& garment, const SelfContactSettings& settings);
+
+    /// @param x0        |V| x 3 (m): positions at t
+    /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt; kept up to date
+    /// @param distance  of vertices from obstacles (m) that is held
+    /// @param x         |V| x 3 (m): positions at t + dt, pins in place
+    /// @param report    max_penetration, tangles and first_tangle are brought up to date
+    void finish(const Points& x0, Proximity& proximity, const Boundary& boundary, double distance,
+                Points& x, SurfaceContacts& contacts, StepReport& report);
+
+    /// What the last finish() had to do.
+    const SelfResolveReport& last() const { return m_last; }
+
+ private:
+    double depth_of_moved(const SurfaceContacts& contacts);
+
+    struct Tools {
+        SelfResolver resolver;
+        SelfTangles tangles;
+    };
+    std::optional<Tools> m_tools;
+    SelfContactSettings m_settings;
+    std::vector<char> m_pinned;
+    std::vector<int> m_rows;
+    SurfaceContacts m_none;  ///< where there are no obstacles
+    SelfResolveReport m_last;
+};
+
+}  // namespace cloth

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "gnn/physics/energy/self_contact.h"
+#include "gnn/physics/xpbd/distance_constraints.h"
+
+namespace cloth {
+
+/// The layers of a garment as a step in substeps sees them: pairs of elements, found once per step,
+/// that are held apart as positions.
+class SelfContactPlanes {
+ public:
+    /// Off, and without cost, if the settings say so.
+    /// @throws ArgumentError if a setting is out of range
+    SelfContactPlanes(const Garment& garment, const SelfContactSettings& settings);
+
+    void begin_step(const ClothState& state, double dt) { m_layers.begin_step(state, dt); }
+
+    /// Moves pairs that are nearer than the thickness, or than at t where that is less, apart
+    /// again, one after the other. Keeps linear momentum; pinned vertices stay.
+    void project(PaddedPoints& x) const;
+
+ private:
+    SelfContactEnergy m_layers;
+    VectorX m_inverse_masses;  ///< |V| (1/kg), 0 for pins
+};
+
+}  // namespace cloth

@@ -1,0 +1,344 @@
+#include "collision/ccd/tunnelling.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "collision/proximity/brute_force.h"
+#include "data/authoring/sheet.h"
+#include "tests/collision/test_meshes.h"
+
+namespace cloth {
+namespace {
+
+using namespace test;
+
+/// A sheet of a metre in the plane y = 0.
+Garment sheet(const std::vector<int>& pins = {}) {
+    return Garment("sheet", make_sheet(1.0, 1.0, 400), Fabric::soft_cotton(), pins);
+}
+
+Points shifted(const Points& x, const Vec3& by) {
+    return x.rowwise() + by.transpose();
+}
+
+/// The mesh, scaled in each coordinate.
+TriMesh scaled(TriMesh mesh, const Vec3& size) {
+    for (int k = 0; k < 3; ++k) mesh.vertices.col(k) *= size[k];
+    return mesh;
+}
+
+Obstacle moving(const TriMesh& mesh, const Pose& from, const Pose& to) {
+    Obstacle obstacle = mesh_obstacle(mesh);
+    obstacle.x0 = transformed(mesh.vertices, from);
+    obstacle.x1 = transformed(mesh.vertices, to);
+    return obstacle;
+}
+
+Obstacle moving(Obstacle shape, const Pose& from, const Pose& to) {
+    shape.pose0 = from;
+    shape.pose1 = to;
+    return shape;
+}
+
+std::set<int> vertices_of(const std::vector<Tunnelling>& found, Eigen::Index count) {
+    std::set<int> points;
+    for (const Tunnelling& solid : found)
+        if (solid.point < count) points.insert(solid.point);
+    return points;
+}
+
+/// The deepest that a point is inside the obstacle on its way, from 400 samples (m), and, if it is
+/// outside at either end, whether it goes in and comes out on sides that face away from each other.
+struct SampledWay {
+    double depth = 0.0;
+    bool through = false;
+};
+
+SampledWay sample_way(const Obstacle& mesh, const Vec3& p0, const Vec3& p1) {
+    constexpr int samples = 400;
+    SampledWay way;
+    Vec3 in = Vec3::Zero(), out = Vec3::Zero();
+    bool inside = false, known = false;
+    for (int k = 0; k <= samples; ++k) {
+        const double t = double(k) / samples;
+        TriMesh now{(1 - t) * mesh.x0 + t * mesh.x1, *mesh.faces};
+        const Vec3 p = (1 - t) * p0 + t * p1;
+        const double distance = brute_force_signed_distance(now, p);
+        way.depth = std::max(way.depth, -distance);
+        if ((distance < 0) == inside) continue;
+        inside = !inside;
+        const auto corner = now.faces.row(brute_force_closest(now, p).face);
+        const Vec3 a = mesh.x1.row(corner[0]), b = mesh.x1.row(corner[1]),
+                   c = mesh.x1.row(corner[2]);
+        const Vec3 normal = (b - a).cross(c - a).normalized();
+        if (inside && !known) in = normal, known = true;
+        if (!inside) out = normal;
+    }
+    way.through = known && !inside && in.dot(out) < 0.0;
+    return way;
+}
+
+TEST(Tunnelling, AreThoseThatSamplesOfTheWayShow) {
+    const Garment garment = sheet();
+    const Points& x0 = garment.rest().vertices;
+    const Points x1 = shifted(x0, {0.02, 0.01, 0.0});
+    // an egg that turns while it passes through the sheet from below
+    const TriMesh egg = scaled(icosphere(2), {0.2, 0.08, 0.12});
+    const Boundary boundary = boundary_of(
+        {moving(egg, pose_of({0.1, -0.11, 0.0}, 0.0), pose_of({0.15, 0.13, 0.05}, 0.3))});
+    TunnellingDetector detector(garment);
+    const std::set<int> found =
+        vertices_of(detector.find(boundary, x0, x1, 0), garment.vertex_count());
+    int through = 0, beside = 0;
+    for (int i = 0; i < garment.vertex_count(); ++i) {
+        const SampledWay way = sample_way(boundary.obstacles[0], x0.row(i), x1.row(i));
+        if (way.depth > 0.0 && way.depth < 5e-3) continue;  // the samples may miss its normals
+        EXPECT_EQ(found.count(i) > 0, way.through) << "vertex " << i;
+        ++(way.through ? through : beside);
+    }
+    EXPECT_GT(through, 15);
+    EXPECT_GT(beside, 200);
+}
+
+TEST(Tunnelling, TellHowThickTheSolidIs) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
+    const Boundary mesh =
+        boundary_of({moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}))});
+    Obstacle box = primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0);
+    const Boundary shape =
+        boundary_of({moving(box, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}))});
+    TunnellingDetector detector(garment);
+    EXPECT_TRUE(std::isinf(detector.thinnest()));
+    const auto expect_plate = [&](const Boundary& boundary) {
+        const auto& found = detector.find(boundary, x, x, 0);
+        EXPECT_NEAR(detector.thinnest(), 0.02, 1e-5);
+        for (const Tunnelling& solid : found) EXPECT_NEAR(solid.thickness, 0.02, 1e-5);
+        return vertices_of(found, x.rows());
+    };
+    const std::set<int> through = expect_plate(mesh);
+    EXPECT_EQ(through, expect_plate(shape));
+    EXPECT_GT(through.size(), 100u);
+    for (int i = 0; i < x.rows(); ++i)
+        EXPECT_EQ(through.count(i) > 0, std::abs(x(i, 0)) < 0.3 && std::abs(x(i, 2)) < 0.3);
+}
+
+TEST(Tunnelling, OfPrimitivesAreThoseOfTheirMeshes) {
+    const Garment garment = sheet();
+    const Points& x0 = garment.rest().vertices;
+    const Points x1 = shifted(x0, {-0.01, -0.02, 0.03});
+    const Pose from = pose_of({0.02, -0.25, 0.01}), to = pose_of({0.06, 0.27, 0.03});
+    TunnellingDetector detector(garment);
+    const auto found = [&](const Obstacle& obstacle) {
+        detector.find(boundary_of({obstacle}), x0, x1, 0);
+        return vertices_of(detector.found(), x0.rows());
+    };
+    const std::set<int> ball =
+        found(moving(primitive(ObstacleShape::sphere, Vec3::Zero(), 0.2), from, to));
+    const std::set<int> mesh = found(moving(scaled(icosphere(4), Vec3::Constant(0.2)), from, to));
+    EXPECT_GT(ball.size(), 20u);
+    std::vector<int> different;
+    std::set_symmetric_difference(ball.begin(), ball.end(), mesh.begin(), mesh.end(),
+                                  std::back_inserter(different));
+    for (const int i : different)  // only at the rim
+        EXPECT_NEAR((x0.row(i) - Eigen::RowVector3d(0.05, 0.0, 0.0)).norm(), 0.2, 0.03);
+}
+
+TEST(Tunnelling, OfSmallPrimitivesAreSeenBetweenVertices) {
+    const Garment garment = sheet();  // vertices about 5 cm apart
+    const Points& x = garment.rest().vertices;
+    const auto corner = garment.rest().faces.row(garment.face_count() / 2);
+    const Vec3 centre = (x.row(corner[0]) + x.row(corner[1]) + x.row(corner[2])) / 3.0;
+    const Vec3 down(0, -0.03, 0);
+    const Obstacle pea = moving(primitive(ObstacleShape::sphere, Vec3::Zero(), 0.006),
+                                pose_of(centre + down), pose_of(centre - down));
+    TunnellingDetector detector(garment);
+    const auto& found = detector.find(boundary_of({pea}), x, x, 0);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].point, garment.vertex_count() + garment.face_count() / 2);
+    EXPECT_NEAR(found[0].thickness, 0.012, 1e-5);
+}
+
+TEST(Tunnelling, AreNotWhatSlidesOrCutsACorner) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const TriMesh block = scaled(cube(), {0.2, 0.1, 0.2});
+    const Obstacle box = primitive(ObstacleShape::box, {0.2, 0.1, 0.2}, 0.0);
+    TunnellingDetector detector(garment);
+    // the sheet slides 30 cm along the top: some of it ends well beyond the edge, below the top
+    Points x1 = shifted(x, {0.3, -0.03, 0.0});
+    for (Eigen::Index i = 0; i < x1.rows(); ++i)
+        if (std::abs(x1(i, 0)) < 0.27 && std::abs(x1(i, 2)) < 0.27) x1(i, 1) = 0.0;
+    const Pose below = pose_of({0, -0.101, 0});
+    EXPECT_TRUE(detector.find(boundary_of({moving(block, below, below)}), x, x1, 0).empty());
+    EXPECT_TRUE(detector.find(boundary_of({moving(box, below, below)}), x, x1, 0).empty());
+    // a ball that turns on the spot, the cloth at rest on it
+    const TriMesh ball = scaled(icosphere(3), Vec3::Constant(0.1));
+    const Obstacle turning =
+        moving(ball, pose_of({0, -0.1, 0}), pose_of({0, -0.1, 0}, 0.7, {0, 0, 1}));
+    EXPECT_TRUE(detector.find(boundary_of({turning}), x, x, 0).empty());
+}
+
+TEST(Tunnelling, FastThingsThatTakeTheClothAlongAreNone) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const TriMesh ball = scaled(icosphere(3), Vec3::Constant(0.1));
+    const Vec3 way(0.3, 0.4, 0.0);
+    const Obstacle carrying =
+        moving(ball, pose_of({0, -0.101, 0}), pose_of(Vec3(0, -0.101, 0) + way));
+    TunnellingDetector detector(garment);
+    EXPECT_TRUE(detector.find(boundary_of({carrying}), x, shifted(x, way), 0).empty());
+    EXPECT_FALSE(detector.find(boundary_of({carrying}), x, x, 0).empty());
+}
+
+class ShallowEnds : public ::testing::TestWithParam<bool> {
+ protected:
+    /// A plate 4 cm thick that moves from `from` to `to` (heights of its middle) through the sheet.
+    std::set<int> through(double from, double to) {
+        const Pose start = pose_of({0, from, 0}), end = pose_of({0, to, 0});
+        const Obstacle plate =
+            GetParam() ? moving(scaled(cube(), {0.3, 0.02, 0.3}), start, end)
+                       : moving(primitive(ObstacleShape::box, {0.3, 0.02, 0.3}, 0.0), start, end);
+        const Points& x = m_garment.rest().vertices;
+        std::set<int> found;
+        for (const int i : vertices_of(m_tunnelling.find(boundary_of({plate}), x, x, 0), x.rows()))
+            if (x.row(i).cwiseAbs().maxCoeff() < 0.28) found.insert(i);  // not near its sides
+        return found;
+    }
+    const Garment m_garment = sheet();
+    TunnellingDetector m_tunnelling{m_garment};
+};
+
+TEST_P(ShallowEnds, CountAsOutside) {
+    const std::set<int> all = through(-0.03, 0.03);
+    EXPECT_GT(all.size(), 50u);
+    EXPECT_EQ(through(-0.018, 0.03), all) << "starts 2 mm inside";
+    EXPECT_EQ(through(-0.03, 0.018), all) << "ends 2 mm inside";
+    EXPECT_EQ(through(-0.018, 0.018), GetParam() ? std::set<int>() : all)
+        << "both: in a mesh they cross nothing";
+    EXPECT_TRUE(through(-0.03, -0.018).empty()) << "barely in";
+    EXPECT_TRUE(through(-0.018, -0.03).empty()) << "led out where it came in";
+    EXPECT_TRUE(through(-0.018, -0.016).empty()) << "a bit deeper";
+}
+
+TEST_P(ShallowEnds, ButDeepOnesDoNot) {
+    EXPECT_FALSE(through(-0.03, 0.0).empty()) << "ends 2 cm inside";
+    EXPECT_TRUE(through(-0.01, 0.03).empty()) << "starts 1 cm inside: nobody knows on which side";
+}
+
+INSTANTIATE_TEST_SUITE_P(MeshAndPrimitive, ShallowEnds, ::testing::Bool(),
+                         [](const auto& scene) { return scene.param ? "mesh" : "box"; });
+
+TEST(Tunnelling, PassOverPinsAndIgnoredLimbs) {
+    const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
+    Obstacle obstacle = moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}));
+    obstacle.limbs = std::make_shared<std::vector<std::uint8_t>>(12, std::uint8_t(3));
+    Boundary boundary = boundary_of({obstacle});
+    const Garment free = sheet();
+    const Points& x = free.rest().vertices;
+    TunnellingDetector detector(free);
+    const std::set<int> through = vertices_of(detector.find(boundary, x, x, 0), x.rows());
+    ASSERT_GT(through.size(), 10u);
+    const int first = *through.begin(), last = *through.rbegin();
+
+    const Garment pinned = sheet({first});
+    std::set<int> expected = through;
+    expected.erase(first);
+    EXPECT_EQ(vertices_of(TunnellingDetector(pinned).find(boundary, x, x, 0), x.rows()), expected);
+
+    boundary.ignored_limbs.assign(static_cast<size_t>(x.rows()), 1u << 2);
+    boundary.ignored_limbs[static_cast<size_t>(last)] = 1u << 3;
+    expected = through;
+    expected.erase(last);
+    EXPECT_EQ(vertices_of(detector.find(boundary, x, x, 0), x.rows()), expected);
+}
+
+TEST(Tunnelling, LimbsOutOfRangeAreNone) {
+    const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
+    Obstacle obstacle = moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}));
+    Boundary boundary = boundary_of({obstacle});
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    TunnellingDetector detector(garment);
+    const std::set<int> through = vertices_of(detector.find(boundary, x, x, 0), x.rows());
+    ASSERT_GT(through.size(), 10u);
+    boundary.ignored_limbs.assign(static_cast<size_t>(x.rows()), ~LimbSet(0));
+    for (const size_t faces : {size_t(12), size_t(11)}) {
+        boundary.obstacles[0].limbs =
+            std::make_shared<std::vector<std::uint8_t>>(faces, std::uint8_t(faces == 12 ? 200 : 0));
+        EXPECT_EQ(vertices_of(detector.find(boundary, x, x, 0), x.rows()), through);
+        for (const Tunnelling& solid : detector.found()) EXPECT_EQ(solid.limb, -1);
+    }
+}
+
+TEST(Tunnelling, FromOneLimbIntoAnotherAreFolds) {
+    // two blocks that overlap, as at a groin: in at the lower one, out at the upper one
+    const TriMesh lower = scaled(cube(), {0.3, 0.02, 0.3});
+    TriMesh both{Points(16, 3), Faces(24, 3)};
+    both.vertices << lower.vertices, shifted(lower.vertices, {0, 0.03, 0});
+    both.faces << lower.faces, lower.faces.array() + 8;
+    Obstacle body = moving(both, pose_of({0, 0.03, 0}), pose_of({0, -0.07, 0}));
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(24, std::uint8_t(0));
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    TunnellingDetector detector(garment);
+    EXPECT_FALSE(detector.find(boundary_of({body}), x, x, 0).empty());
+    body.limbs = limbs;
+    EXPECT_FALSE(detector.find(boundary_of({body}), x, x, 0).empty());
+    auto two = std::make_shared<std::vector<std::uint8_t>>(*limbs);
+    std::fill(two->begin() + 12, two->end(), std::uint8_t(1));
+    body.limbs = two;
+    EXPECT_TRUE(detector.find(boundary_of({body}), x, x, 0).empty());
+}
+
+TEST(Tunnelling, DependOnTheArgumentsAlone) {
+    const Garment garment = sheet();
+    const Points& x0 = garment.rest().vertices;
+    const Points x1 = shifted(x0, {0.02, -0.2, 0.01});
+    const TriMesh rough = scaled(roughened(icosphere(3), 0.1, 1), {0.3, 0.05, 0.2});
+    Boundary boundary =
+        boundary_of({moving(rough, pose_of({0, -0.1, 0}), pose_of({0, -0.1, 0}, 0.2)),
+                     moving(primitive(ObstacleShape::sphere, Vec3::Zero(), 0.05),
+                            pose_of({0.4, -0.1, 0.4}), pose_of({0.4, -0.1, 0.4}))});
+    boundary.obstacles.push_back(boundary.obstacles[0]);  // the same faces twice
+    TunnellingDetector fresh(garment), used(garment);
+    const std::vector<Tunnelling> once = fresh.find(boundary, x0, x1, 1);
+    EXPECT_GT(once.size(), 20u);
+    used.find(boundary_of({moving(rough, pose_of({1, 2, 3}), pose_of({0, 0, 0}))}), x1, x0, 2);
+    used.find(boundary, x0, x1, 2);
+    ASSERT_EQ(used.found().size(), once.size());
+    for (size_t k = 0; k < once.size(); ++k) {
+        EXPECT_EQ(used.found()[k].point, once[k].point);
+        EXPECT_EQ(used.found()[k].obstacle, once[k].obstacle);
+        EXPECT_EQ(used.found()[k].thickness, once[k].thickness);
+    }
+}
+
+TEST(Tunnelling, UnusableObstaclesArePassedOver) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
+    const Obstacle good = moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}));
+    Obstacle no_faces = good, short_x1 = good, out_of_range = good, not_finite = good;
+    no_faces.faces = nullptr;
+    short_x1.x1 = good.x1.topRows(4);
+    Faces faces = plate.faces;
+    faces(3, 1) = 99;
+    out_of_range.faces = std::make_shared<const Faces>(faces);
+    not_finite.x1(2, 0) = std::nan("");
+    Obstacle no_size = primitive(ObstacleShape::sphere, Vec3::Zero(), -1.0);
+    TunnellingDetector detector(garment);
+    EXPECT_TRUE(
+        detector.find(boundary_of({no_faces, short_x1, out_of_range, not_finite, no_size}), x, x, 0)
+            .empty());
+    const auto& found = detector.find(boundary_of({out_of_range, good}), x, x, 0);
+    ASSERT_FALSE(found.empty());
+    for (const Tunnelling& solid : found) EXPECT_EQ(solid.obstacle, 1);
+}
+
+}  // namespace
+}  // namespace cloth

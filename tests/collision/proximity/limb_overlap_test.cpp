@@ -1,0 +1,239 @@
+#include "collision/proximity/limb_overlap.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "data/core/errors.h"
+#include "tests/collision/test_meshes.h"
+
+namespace cloth {
+namespace {
+
+using namespace test;
+
+constexpr double dt = 1.0 / 30.0;
+constexpr LimbSet trunk = 1, arm = 2;
+
+/// A ball (limb 0) around the origin and a smaller one (limb 1) in one mesh.
+/// @param joined  by a face between them, as an arm is to its trunk
+class TwoLimbs {
+ public:
+    explicit TwoLimbs(bool joined) {
+        const TriMesh ball = icosphere(3);
+        m_count = ball.vertices.rows();
+        m_ball = ball.vertices;
+        Faces faces(2 * ball.faces.rows() + (joined ? 1 : 0), 3);
+        faces.topRows(ball.faces.rows()) = ball.faces;
+        faces.middleRows(ball.faces.rows(), ball.faces.rows()) =
+            ball.faces.array() + static_cast<int>(m_count);
+        if (joined) {
+            Eigen::Index out = 0, in = 0;  // where they meet
+            ball.vertices.col(0).maxCoeff(&out);
+            ball.vertices.col(0).minCoeff(&in);
+            const int a = static_cast<int>(m_count + in), b = static_cast<int>(out);
+            faces.bottomRows(1) << a, b, b;
+        }
+        auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 1);
+        std::fill_n(limbs->begin(), ball.faces.rows(), 0);
+        m_faces = std::make_shared<const Faces>(faces);
+        m_limbs = limbs;
+    }
+
+    /// The arm's centre moves along x from `from` to `to`.
+    Boundary boundary(double from, double to) const {
+        Obstacle body;
+        body.faces = m_faces;
+        body.limbs = m_limbs;
+        body.x0 = vertices(from);
+        body.x1 = vertices(to);
+        return boundary_of({body});
+    }
+
+ private:
+    Points vertices(double x) const {
+        Points all(2 * m_count, 3);
+        all << 0.15 * m_ball, (0.05 * m_ball).rowwise() + Eigen::RowVector3d(x, 0, 0);
+        return all;
+    }
+    Eigen::Index m_count;
+    Points m_ball;
+    std::shared_ptr<const Faces> m_faces;
+    std::shared_ptr<const std::vector<std::uint8_t>> m_limbs;
+};
+
+/// Cloth that hugs the trunk, 2 mm off.
+ClothState shell() {
+    const Points x = 0.152 * icosphere(2).vertices;
+    return {x, Points::Zero(x.rows(), 3)};
+}
+
+int ignoring(const Boundary& boundary, LimbSet limb) {
+    return static_cast<int>(std::count_if(boundary.ignored_limbs.begin(),
+                                          boundary.ignored_limbs.end(),
+                                          [&](LimbSet limbs) { return (limbs & limb) != 0; }));
+}
+
+TEST(LimbOverlap, LeavesABodyWithoutOverlapAlone) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    for (int frame = 0; frame < 3; ++frame) {
+        const Boundary boundary = body.boundary(0.25, 0.22);  // touches the cloth: it is 1.8 cm off
+        EXPECT_EQ(&limbs.filter(boundary, dt, state), &boundary);
+    }
+    const Boundary empty;
+    EXPECT_EQ(&limbs.filter(empty, dt, state), &empty);
+    EXPECT_TRUE(limbs.ignored().empty());
+}
+
+TEST(LimbOverlap, AllClothIgnoresABuriedLimbUntilItIsClear) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    limbs.filter(body.boundary(0.3, 0.3), dt, state);
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.24, 0.17), dt, state), arm), state.x.rows());
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.17, 0.17), dt, state), trunk), 0);
+    // out of the trunk, but not of the cloth
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.17, 0.205), dt, state), arm), state.x.rows());
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.205, 0.205), dt, state), arm), state.x.rows());
+    // clear by more than a centimetre
+    limbs.filter(body.boundary(0.205, 0.24), dt, state);
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.24, 0.24), dt, state), arm), 0);
+    EXPECT_EQ(limbs.ignored(), std::vector<LimbSet>(size_t(state.x.rows()), 0));
+}
+
+TEST(LimbOverlap, AJoinedLimbIsIgnoredOnlyWhereItFoldsIn) {
+    const TwoLimbs body(true);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    limbs.filter(body.boundary(0.3, 0.3), dt, state);
+    const Boundary& outside = limbs.filter(body.boundary(0.17, 0.17), dt, state);
+    const int count = ignoring(outside, arm);
+    EXPECT_GT(count, 0);
+    EXPECT_LT(count, state.x.rows() / 2);
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+        if (ignored_limbs(outside, static_cast<int>(i)) == 0) continue;
+        EXPECT_LT((state.x.row(i) - Eigen::RowVector3d(0.17, 0, 0)).norm(), 0.05)
+            << "outside the arm";
+    }
+}
+
+/// Cloth that hugs the arm, 2 mm off.
+ClothState sleeve(double x) {
+    const Points points = (0.052 * icosphere(2).vertices).rowwise() + Eigen::RowVector3d(x, 0, 0);
+    return {points, Points::Zero(points.rows(), 3)};
+}
+
+/// The part of a sleeve that its arm takes into the trunk stays on the arm.
+TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
+    const TwoLimbs body(true);
+    LimbOverlap limbs;
+    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+    const ClothState folded = sleeve(0.14);
+    const Boundary& outside = limbs.filter(body.boundary(0.14, 0.14), dt, folded);
+    for (Eigen::Index i = 0; i < folded.x.rows(); ++i) {
+        const double depth = 0.15 - folded.x.row(i).norm();
+        if (std::abs(depth) < 0.005) continue;
+        EXPECT_EQ((ignored_limbs(outside, static_cast<int>(i)) & trunk) != 0, depth > 0.0) << i;
+    }
+}
+
+TEST(LimbOverlap, AThinCoverIsContact) {
+    const TwoLimbs body(true);
+    const auto ignoring_arm = [&](double least_cover) {
+        LimbOverlapSettings settings;
+        settings.least_cover = least_cover;
+        LimbOverlap limbs(settings);
+        limbs.filter(body.boundary(0.3, 0.3), dt, shell());
+        return ignoring(limbs.filter(body.boundary(0.17, 0.17), dt, shell()), arm);
+    };
+    EXPECT_GT(ignoring_arm(0.01), 0);
+    EXPECT_EQ(ignoring_arm(0.1), 0);  // the arm lies 7 cm thick over the trunk's skin
+}
+
+/// A limb that folds into the one that it is joined to stays solid for other cloth.
+TEST(LimbOverlap, AFoldBuriesNoLimb) {
+    const auto with_sleeve_on_another_limb = [](bool joined) {
+        const TwoLimbs body(joined);
+        const TriMesh ball = icosphere(2);
+        Obstacle other;
+        other.faces = std::make_shared<const Faces>(ball.faces);
+        other.limbs = std::make_shared<const std::vector<std::uint8_t>>(ball.faces.rows(), 2);
+        other.x0 = other.x1 = (0.05 * ball.vertices).rowwise() + Eigen::RowVector3d(0.17, 0.135, 0);
+        ClothState cloth = sleeve(0.17);
+        cloth.x.col(1).array() += 0.135;
+        LimbOverlap limbs;
+        Boundary boundary = body.boundary(0.3, 0.12);
+        boundary.obstacles.push_back(other);
+        return ignoring(limbs.filter(boundary, dt, cloth), arm);
+    };
+    EXPECT_GT(with_sleeve_on_another_limb(false), 0);
+    EXPECT_EQ(with_sleeve_on_another_limb(true), 0);
+}
+
+TEST(LimbOverlap, ClothAtHomeOnTheLimbKeepsToIt) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+    const ClothState moved = sleeve(0.17);
+    const Boundary& outside = limbs.filter(body.boundary(0.17, 0.17), dt, moved);
+    EXPECT_EQ(ignoring(outside, arm), 0);
+    EXPECT_EQ(ignoring(outside, trunk), moved.x.rows());
+}
+
+TEST(LimbOverlap, FarClothHasNoHomeAndIgnoresNothing) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    ClothState state = shell();
+    state.x.array() += 1.0;
+    const Boundary boundary = body.boundary(0.17, 0.17);
+    EXPECT_EQ(&limbs.filter(boundary, dt, state), &boundary);
+}
+
+TEST(LimbOverlap, AnotherBodyIsLearntAnew) {
+    const TwoLimbs body(false), other(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    limbs.filter(body.boundary(0.17, 0.17), dt, state);
+    EXPECT_EQ(ignoring(limbs.filter(other.boundary(0.3, 0.3), dt, state), arm), 0);
+    const Points x = 0.152 * icosphere(1).vertices;
+    const ClothState coarse{x, Points::Zero(x.rows(), 3)};
+    EXPECT_EQ(ignoring(limbs.filter(other.boundary(0.17, 0.17), dt, coarse), arm), x.rows());
+}
+
+TEST(LimbOverlap, UnusableLimbsAreNone) {
+    const TwoLimbs body(false);
+    const ClothState state = shell();
+    Boundary boundary = body.boundary(0.17, 0.17);
+    auto wrong = std::make_shared<std::vector<std::uint8_t>>(*boundary.obstacles[0].limbs);
+    wrong->back() = 32;
+    boundary.obstacles[0].limbs = wrong;
+    EXPECT_EQ(&LimbOverlap().filter(boundary, dt, state), &boundary);
+    wrong->resize(3);
+    EXPECT_EQ(&LimbOverlap().filter(boundary, dt, state), &boundary);
+}
+
+TEST(LimbOverlap, OtherObstaclesMayComeAndGo) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    limbs.filter(body.boundary(0.3, 0.3), dt, state);
+    limbs.filter(body.boundary(0.17, 0.17), dt, state);
+    // still inside the cloth: only who remembers goes on to ignore it
+    Boundary more = body.boundary(0.205, 0.205);
+    more.obstacles.insert(more.obstacles.begin(),
+                          primitive(ObstacleShape::sphere, Vec3::Zero(), 0.01));
+    EXPECT_EQ(ignoring(limbs.filter(more, dt, state), arm), state.x.rows());
+    EXPECT_EQ(ignoring(LimbOverlap().filter(more, dt, state), arm), 0);
+}
+
+TEST(LimbOverlap, SettingsOutOfRangeAreNamed) {
+    for (const LimbOverlapSettings wrong :
+         {LimbOverlapSettings{0.5, 0.01, 0.04}, LimbOverlapSettings{0.05, 0.0, 0.04},
+          LimbOverlapSettings{std::nan(""), 0.01, 0.04}, LimbOverlapSettings{0.05, 0.01, -1.0}})
+        EXPECT_THROW(LimbOverlap{wrong}, ArgumentError);
+}
+
+}  // namespace
+}  // namespace cloth

@@ -1,0 +1,212 @@
+// Queries that pass over limbs, and how much lies over skin inside other limbs.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "collision/proximity/brute_force.h"
+#include "collision/proximity/proximity.h"
+#include "data/core/errors.h"
+#include "tests/collision/test_meshes.h"
+
+namespace cloth {
+namespace {
+
+using namespace test;
+
+/// A limb for each slice of the mesh along x.
+Obstacle sliced(const TriMesh& mesh, int limbs) {
+    Obstacle obstacle = mesh_obstacle(mesh);
+    auto labels = std::make_shared<std::vector<std::uint8_t>>();
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+        const double x = mesh.vertices(mesh.faces(f, 0), 0);
+        labels->push_back(
+            static_cast<std::uint8_t>(std::clamp(int((x + 1.3) / 2.6 * limbs), 0, limbs - 1)));
+    }
+    obstacle.limbs = labels;
+    return obstacle;
+}
+
+TriMesh without(const TriMesh& mesh, const std::vector<std::uint8_t>& limbs, LimbSet ignored) {
+    TriMesh rest{mesh.vertices, Faces(mesh.faces.rows(), 3)};
+    Eigen::Index count = 0;
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+        if (((ignored >> limbs[static_cast<size_t>(f)]) & 1u) == 0)
+            rest.faces.row(count++) = mesh.faces.row(f);
+    rest.faces.conservativeResize(count, 3);
+    return rest;
+}
+
+/// Whether the corners that span a point are those of an ignored face, too.
+bool is_on_border(const TriMesh& rest, const TriMesh& mesh, const std::vector<std::uint8_t>& limbs,
+                  LimbSet ignored, const SurfacePoint& at) {
+    const auto has_corner = [&](Eigen::Index face, const Vec3& corner) {
+        for (int k = 0; k < 3; ++k)
+            if (mesh.vertices.row(mesh.faces(face, k)).transpose() == corner) return true;
+        return false;
+    };
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+        if (((ignored >> limbs[static_cast<size_t>(f)]) & 1u) == 0) continue;
+        bool all = true;
+        for (int k = 0; k < 3; ++k)
+            if (at.barycentric[k] != 0.0)
+                all = all && has_corner(f, rest.vertices.row(rest.faces(at.face, k)));
+        if (all) return true;
+    }
+    return false;
+}
+
+TEST(Limbs, QueriesPassOverThoseThatAreIgnored) {
+    std::mt19937 random(3);
+    int at_border = 0, found = 0;
+    for (const TriMesh& mesh :
+         {roughened(icosphere(2), 0.3, 2), torus(40, 20, 0.8, 0.3), triangle_soup(icosphere(2))}) {
+        const Obstacle obstacle = sliced(mesh, 5);
+        const Boundary boundary = boundary_of({obstacle});
+        const Points x = random_points(random, 400, 1.3);
+        std::vector<LimbSet> ignored;
+        std::vector<int> rows;
+        for (int i = 0; i < x.rows(); ++i) ignored.push_back(random() % 32), rows.push_back(i);
+        Proximity proximity({0.4, 0});
+        SurfaceContacts all, contacts;
+        proximity.query(x, boundary, all);
+        contacts = all;
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::start, {&ignored});
+        for (int i = 0; i < x.rows(); ++i) {
+            const LimbSet passed_over = ignored[static_cast<size_t>(i)];
+            const TriMesh rest = without(mesh, *obstacle.limbs, passed_over);
+            const SurfacePoint expected = brute_force_closest(rest, x.row(i));
+            if (expected.face < 0 || expected.distance > 0.4) {
+                EXPECT_FALSE(contacts.has(i));
+                continue;
+            }
+            if (!contacts.has(i)) {
+                EXPECT_TRUE(is_on_border(rest, mesh, *obstacle.limbs, passed_over, expected));
+                ++at_border;
+                continue;
+            }
+            ++found;
+            EXPECT_NEAR(std::abs(contacts.distance[i]), expected.distance, 1e-12);
+            const auto limb = (*obstacle.limbs)[size_t(contacts.face[size_t(i)])];
+            EXPECT_EQ((passed_over >> limb) & 1u, 0u);
+        }
+    }
+    EXPECT_GT(found, 300);
+    EXPECT_GT(at_border, 10);
+}
+
+TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
+    std::mt19937 random(11);
+    const Boundary boundary = boundary_of({mesh_obstacle(torus(40, 20, 0.8, 0.3)),
+                                           primitive(ObstacleShape::sphere, Vec3::Zero(), 0.1)});
+    const Points x = random_points(random, 2000, 1.3);
+    std::vector<int> rows(2000);
+    std::iota(rows.begin(), rows.end(), 0);
+    Proximity proximity({0.2, 0});
+    SurfaceContacts all, near;
+    proximity.query(x, boundary, all);
+    near = all;
+    proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 0.05});
+    int kept = 0, left_out = 0;
+    for (const int i : rows) {
+        const bool is_sphere = all.has(i) && all.obstacle[size_t(i)] == 1;
+        const double distance = is_sphere ? all.distance[i] : std::abs(all.distance[i]);
+        ASSERT_EQ(near.has(i), distance <= 0.05) << i;
+        ++(near.has(i) ? kept : left_out);
+        if (near.has(i)) {
+            EXPECT_EQ(near.distance[i], all.distance[i]);
+        }
+    }
+    EXPECT_GT(std::min(kept, left_out), 50);
+    proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 1.0});
+    EXPECT_EQ(near.distance, all.distance) << "not beyond the settings' radius";
+}
+
+TEST(Limbs, TheBoundarySaysWhatVerticesIgnore) {
+    const TriMesh mesh = icosphere(2);
+    Boundary boundary = boundary_of({sliced(mesh, 2)});
+    Points x(2, 3);
+    x << -1.05, 0, 0, 1.05, 0, 0;
+    Proximity proximity({0.4, 0});
+    SurfaceContacts contacts;
+    boundary.ignored_limbs = {1, 1};  // limb 0, the half x < 0
+    proximity.query(x, boundary, contacts);
+    EXPECT_FALSE(contacts.has(0));
+    EXPECT_TRUE(contacts.has(1));
+    VectorX distance;
+    proximity.signed_distance(x, boundary, StepEnd::end, distance);
+    EXPECT_TRUE(std::isinf(distance[0]));
+    boundary.ignored_limbs = {1};  // of another garment
+    proximity.query(x, boundary, contacts);
+    EXPECT_TRUE(contacts.has(0) && contacts.has(1));
+}
+
+TEST(Limbs, CoverIsWhatLiesOverAPoint) {
+    // two balls of radius 0.2 in one mesh, 0.3 apart along x
+    const double radius = 0.2;
+    const Vec3 centre(0.3, 0, 0);
+    const TriMesh ball = icosphere(4);
+    const Eigen::Index count = ball.vertices.rows();
+    TriMesh both{Points(2 * count, 3), Faces(2 * ball.faces.rows(), 3)};
+    both.vertices.topRows(count) = radius * ball.vertices;
+    both.vertices.bottomRows(count) = (radius * ball.vertices).rowwise() + centre.transpose();
+    both.faces << ball.faces, ball.faces.array() + static_cast<int>(count);
+    std::mt19937 random(7);
+    Points x(500, 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        x.row(i) = 1.001 * radius * random_point(random, 1.0).normalized().transpose();
+    Obstacle obstacle = mesh_obstacle(both);
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(both.faces.rows()), 1);
+    std::fill_n(limbs->begin(), ball.faces.rows(), 0);
+    obstacle.limbs = limbs;
+    Proximity proximity;
+    SurfaceContacts contacts;
+    proximity.query(x, boundary_of({obstacle}), contacts);
+    int covered = 0;
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const auto [cover, by] = proximity.cover(contacts, i, StepEnd::start);
+        EXPECT_EQ(cover > 0.0, by >= 0);
+        const Vec3 from = x.row(i) / 1.001, up = from / radius;
+        const double away = (from - centre).norm();
+        if (away > 0.205) {
+            EXPECT_EQ(cover, 0.0);
+        }
+        if (away > 0.195 || contacts.face[size_t(i)] >= ball.faces.rows()) continue;
+        ++covered;
+        EXPECT_GE(by, ball.faces.rows()) << "the other ball";
+        EXPECT_EQ(proximity.cover(contacts, i, StepEnd::start, /*ignored=*/2).face, -1);
+        const double along = (centre - from).dot(up);
+        const double exit = along + std::sqrt(along * along + radius * radius - away * away);
+        EXPECT_NEAR(cover, exit, 0.01) << "point " << i;
+    }
+    EXPECT_GT(covered, 20);
+}
+
+TEST(Limbs, UnusableOnesAreNamedBySetUpAndDoNoHarm) {
+    Obstacle obstacle = mesh_obstacle(icosphere(1));
+    const auto message = [](const Obstacle& wrong) -> std::string {
+        try {
+            check_obstacles(boundary_of({wrong}));
+            return "";
+        } catch (const ArgumentError& error) {
+            return error.what();
+        }
+    };
+    obstacle.limbs = std::make_shared<std::vector<std::uint8_t>>(3, 0);
+    EXPECT_NE(message(obstacle).find("one limb from 0 to 31 for each face"), std::string::npos);
+    Obstacle far = obstacle;
+    far.limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(far.faces->rows()), 32);
+    EXPECT_NE(message(far).find("from 0 to 31"), std::string::npos);
+    Points x(1, 3);
+    x << 0, 1.1, 0;
+    Proximity proximity({0.4, 0});
+    SurfaceContacts contacts;
+    for (const Obstacle& wrong : {obstacle, far}) {
+        proximity.query(x, boundary_of({wrong}), contacts);
+        EXPECT_TRUE(contacts.has(0));
+    }
+}
+
+}  // namespace
+}  // namespace cloth

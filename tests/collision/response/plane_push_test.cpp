@@ -1,0 +1,87 @@
+#include "collision/response/plane_push.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/collision/test_meshes.h"
+
+namespace cloth {
+namespace {
+
+using namespace test;
+
+constexpr double third = 1.0 / 3.0;
+
+TEST(PlanePush, LiftsTheCentreOfAFaceByItsVertices) {
+    PlanePush push(VectorX::Ones(4));
+    Points x = Points::Zero(4, 3);
+    push.add({0, 1, 2}, {third, third, third}, Vec3::UnitY(), 0.01);
+    push.solve(100, 3.0, x);
+    for (const int i : {0, 1, 2}) EXPECT_NEAR(x(i, 1), 0.01, 1e-5);
+    EXPECT_EQ(x.row(3).norm(), 0.0);
+    EXPECT_EQ(push.moved(), (std::vector<int>{0, 1, 2}));
+}
+
+TEST(PlanePush, LightVerticesMoveMoreAndPinnedOnesNever) {
+    VectorX inverse(3);
+    inverse << 2.0, 1.0, 0.0;
+    PlanePush push(inverse);
+    Points x = Points::Zero(3, 3);
+    push.add({0, 1, 2}, {third, third, third}, Vec3::UnitY(), 0.01);
+    push.solve(100, 10.0, x);
+    EXPECT_NEAR(x(0, 1), 0.02, 1e-5);
+    EXPECT_NEAR(x(1, 1), 0.01, 1e-5);
+    EXPECT_EQ(x(2, 1), 0.0);
+}
+
+TEST(PlanePush, PlanesThatAgreeDoNotAddUp) {
+    PlanePush push(VectorX::Ones(3));
+    Points x = Points::Zero(3, 3);
+    for (int repeat = 0; repeat < 5; ++repeat)
+        push.add({0, 1, 2}, {third, third, third}, Vec3::UnitY(), 0.01);
+    push.solve(100, 3.0, x);
+    for (const int i : {0, 1, 2}) EXPECT_NEAR(x(i, 1), 0.01, 1e-5);
+}
+
+TEST(PlanePush, AFaceAndAVertexPartWithoutMomentum) {
+    VectorX inverse(4);
+    inverse << 1.0, 2.0, 4.0, 1.0;
+    PlanePush push(inverse);
+    std::mt19937 random(2);
+    const Points before = random_points(random, 4, 1e-3);
+    Points x = before;
+    const std::array<double, 4> weight{1.0, -0.5, -0.3, -0.2};
+    push.add_pair({0, 1, 2, 3}, weight, Vec3::UnitY(), 0.01);
+    push.solve(200, 10.0, x);
+    double height = 0.0, momentum = 0.0;
+    for (int k = 0; k < 4; ++k) {
+        height += weight[size_t(k)] * x(k, 1);
+        momentum += (x(k, 1) - before(k, 1)) / inverse[k];
+    }
+    EXPECT_NEAR(height, 0.01, 1e-5);
+    EXPECT_NEAR(momentum, 0.0, 1e-15);
+    EXPECT_EQ(push.moved(), (std::vector<int>{0, 1, 2, 3}));
+}
+
+TEST(PlanePush, PointsAboveTheirPlanesStay) {
+    PlanePush push(VectorX::Ones(3));
+    std::mt19937 random(1);
+    const Points before = random_points(random, 3, 1.0);
+    Points x = before;
+    push.add({0, 1, 2}, {third, third, third}, Vec3::UnitZ(), -2.0);
+    push.solve(100, 3.0, x);
+    EXPECT_EQ(x, before);
+}
+
+TEST(PlanePush, PlanesThatContradictEachOtherAreBounded) {
+    PlanePush push(VectorX::Ones(2));
+    Points x = Points::Zero(2, 3);
+    push.add({0, 1, 1}, {0.5, 0.5, 0.0}, Vec3::UnitY(), 0.01);
+    push.add({0, 1, 1}, {0.5, 0.5, 0.0}, -Vec3::UnitY(), 0.01);
+    push.add({0, 0, 0}, {1.0, 0.0, 0.0}, -Vec3::UnitY(), 0.0);
+    push.solve(1000, 3.0, x);
+    EXPECT_TRUE(x.allFinite());
+    EXPECT_LE(x.rowwise().norm().maxCoeff(), 0.03 + 1e-12);
+}
+
+}  // namespace
+}  // namespace cloth

@@ -1,0 +1,193 @@
+#include "collision/self/self_resolve.h"
+
+#include <gtest/gtest.h>
+
+#include "collision/self/self_tangles.h"
+#include "tests/collision/self/self_scenes.h"
+
+namespace cloth {
+namespace {
+
+using namespace test;
+
+/// Six times the volume of the tetrahedron of the four corners, moved on by s motion.
+double volume(const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& motion, double s) {
+    std::array<Vec3, 4> at;
+    for (size_t k = 0; k < 4; ++k) at[k] = x[k] + s * motion[k];
+    return (at[1] - at[0]).dot((at[2] - at[0]).cross(at[3] - at[0]));
+}
+
+/// Whether elements pass through each other: they do where their corners are in one plane (a root
+/// of a cubic, found by bisection between samples) and their closest points are one.
+bool pass(bool edges, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& motion) {
+    constexpr int samples = 400;
+    for (int k = 0; k < samples; ++k) {
+        double low = double(k) / samples, high = double(k + 1) / samples;
+        const double first = volume(x, motion, low);
+        if (first * volume(x, motion, high) > 0.0) continue;
+        for (int halving = 0; halving < 60; ++halving) {
+            const double middle = 0.5 * (low + high);
+            (first * volume(x, motion, middle) > 0.0 ? low : high) = middle;
+        }
+        std::array<Vec3, 4> at;
+        for (size_t i = 0; i < 4; ++i) at[i] = x[i] + low * motion[i];
+        if (closest_points(edges, at).squared < 1e-20) return true;
+    }
+    return false;
+}
+
+double least_distance(bool edges, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& motion) {
+    double least = 1e9;
+    for (int k = 0; k <= 2000; ++k) {
+        std::array<Vec3, 4> at;
+        for (size_t i = 0; i < 4; ++i) at[i] = x[i] + k / 2000.0 * motion[i];
+        least = std::min(least, closest_points(edges, at).squared);
+    }
+    return std::sqrt(least);
+}
+
+SelfContactSettings settings(int rounds = 8, int threads = 0) {
+    SelfContactSettings contact;
+    contact.thickness = 4e-3;
+    contact.rounds = rounds;
+    contact.threads = threads;
+    return contact;
+}
+
+Points crumpling(const Points& x, double size) {
+    Points motion(x.rows(), 3);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        motion.row(i) << size * std::sin(200 * x(i, 1)), size * std::cos(170 * x(i, 0)),
+            size * std::sin(150 * x(i, 0) + 100 * x(i, 1));
+    return motion;
+}
+
+Vec3 momentum(const Garment& garment, const Points& motion) {
+    return motion.transpose() * garment.masses();
+}
+
+}  // namespace
+
+TEST(Crosses, AgreesWithTheRootsOfTheVolume) {
+    std::mt19937 random(8);
+    int crossings = 0, misses = 0;
+    for (int repeat = 0; repeat < 3000; ++repeat) {
+        const bool edges = repeat % 2 == 0;
+        const Points x = random_points(random, 4, 1.0), motion = random_points(random, 4, 1.0);
+        const ElementPair pair{{0, 1, 2, 3}, {0, 1}, edges};
+        const std::array<Vec3, 4> corners = corners_of(pair, x), moves = corners_of(pair, motion);
+        SelfPair found;
+        const bool crossing = crosses(pair, x, motion, found);
+        if (pass(edges, corners, moves)) {
+            ++crossings;
+            ASSERT_TRUE(crossing);
+            EXPECT_GT(found.distance_at(x), 0.0) << "the side is that of the start";
+        } else if (least_distance(edges, corners, moves) > 2e-3) {
+            ++misses;
+            EXPECT_FALSE(crossing);
+        }
+    }
+    EXPECT_GT(crossings, 200);
+    EXPECT_GT(misses, 1000);
+}
+
+TEST(Crosses, FlatClothThatSlidesInItsPlaneDoesNot) {
+    const Garment garment = strip();
+    SelfCrossings crossings(garment);
+    const Points& x = garment.rest().vertices;
+    Points to = 1.02 * x;
+    to.rowwise() += Eigen::RowVector3d(0.3, 0.1, 0.2);
+    EXPECT_TRUE(crossings.find(x, to, 1).empty());
+}
+
+TEST(SelfResolver, KeepsASheetAboveAnother) {
+    const MergedGarments sheets = two_sheets(5e-3, 300);
+    const Garment& garment = sheets.garment;
+    SelfResolver resolver(garment, settings());
+    const Points x0 = garment.rest().vertices;
+    Points x = x0;
+    for (Eigen::Index i = sheets.first_vertex[1]; i < x.rows(); ++i)
+        x.row(i) += Eigen::RowVector3d(0.01, -0.02 - 0.02 * x0(i, 0), 0.0);
+    const Points before = x;
+    const SelfResolveReport report = resolver.resolve(x0, {}, 0.0, x);
+    EXPECT_GT(report.crossings, 100);
+    EXPECT_EQ(report.left, 0);
+    EXPECT_TRUE(SelfTangles(garment).find(x).empty());
+    for (Eigen::Index i = sheets.first_vertex[1]; i < x.rows(); ++i)
+        EXPECT_GT(x(i, 1), x.topRows(sheets.first_vertex[1]).col(1).minCoeff());
+    EXPECT_LT((momentum(garment, x - x0) - momentum(garment, before - x0)).norm(), 1e-12);
+    EXPECT_FALSE(resolver.moved().empty());
+}
+
+TEST(SelfResolver, ARollThatIsShakenHardDoesNotTangle) {
+    const Garment garment = strip(600);
+    const Points x0 = wound(garment.rest().vertices, 6e-3);
+    ASSERT_TRUE(SelfTangles(garment).find(x0).empty());
+    for (const int rounds : {1, 8}) {  // one round leaves work for the rigid zones
+        SelfResolver resolver(garment, settings(rounds));
+        Points x = x0 + crumpling(x0, 0.01);
+        const Points before = x;
+        ASSERT_GT(SelfTangles(garment).find(x).size(), 20u);
+        const SelfResolveReport report = resolver.resolve(x0, {}, 0.0, x);
+        EXPECT_EQ(report.left, 0);
+        EXPECT_TRUE(rounds > 1 || report.rigid > 0);
+        EXPECT_TRUE(SelfTangles(garment).find(x).empty());
+        EXPECT_LT((momentum(garment, x - x0) - momentum(garment, before - x0)).norm(), 1e-12);
+        EXPECT_LT((x - before).rowwise().norm().maxCoeff(), 0.05);
+    }
+}
+
+TEST(SelfResolver, WhatDoesNotCrossKeepsItsBits) {
+    const Garment garment = strip();
+    SelfResolver resolver(garment, settings());
+    const Points x0 = wound(garment.rest().vertices, 8e-3);
+    Points x = x0.rowwise() + Eigen::RowVector3d(0.2, -0.3, 0.1);
+    const Points before = x;
+    const SelfResolveReport report = resolver.resolve(x0, {}, 0.0, x);
+    EXPECT_EQ(report.crossings, 0);
+    EXPECT_TRUE(x == before);
+    EXPECT_TRUE(resolver.moved().empty());
+}
+
+TEST(SelfResolver, SameBitsForAnyNumberOfThreadsAndPinsStay) {
+    const Garment garment = strip(600).with_pins({10, 200});
+    const Points x0 = wound(garment.rest().vertices, 6e-3);
+    SelfResolver one(garment, settings(4, 1)), three(garment, settings(4, 3));
+    Points x = x0 + crumpling(x0, 0.01);
+    const Points before = x;
+    Points other = x;
+    one.resolve(x0, {}, 0.0, x);
+    three.resolve(x0, {}, 0.0, other);
+    EXPECT_TRUE(x != before);
+    EXPECT_TRUE(x == other);
+    for (const int pin : garment.pins()) EXPECT_EQ(x.row(pin), before.row(pin));
+}
+
+TEST(SelfResolver, ATangledStartIsLeftNoWorse) {
+    const MergedGarments sheets = two_sheets(0.0, 300);
+    const Garment& garment = sheets.garment;
+    Points x0 = garment.rest().vertices;
+    // aside, for edges that touch exactly have no side to be kept on
+    for (Eigen::Index i = sheets.first_vertex[1]; i < x0.rows(); ++i)
+        x0.row(i) += Eigen::RowVector3d(0.0037, 0.2 * x0(i, 0) + 1e-3, 0.0023);
+    SelfTangles tangles(garment);
+    const size_t tangled = tangles.find(x0).size();
+    ASSERT_GT(tangled, 10u);
+    SelfResolver resolver(garment, settings());
+    Points x = x0;
+    for (Eigen::Index i = sheets.first_vertex[1]; i < x0.rows(); ++i) x(i, 1) -= 0.01;
+    EXPECT_EQ(resolver.resolve(x0, {}, 0.0, x).left, 0);
+    EXPECT_TRUE(x.allFinite());
+    EXPECT_LE(tangles.find(x).size(), tangled);
+}
+
+TEST(SelfResolver, RefusesSettingsOutOfRange) {
+    SelfContactSettings bad = settings();
+    bad.thickness = 0.5;
+    EXPECT_THROW(SelfResolver(strip(), bad), std::invalid_argument);
+    bad = settings();
+    bad.rounds = -1;
+    EXPECT_THROW(SelfResolver(strip(), bad), std::invalid_argument);
+}
+
+}  // namespace cloth

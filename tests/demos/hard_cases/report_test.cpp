@@ -1,0 +1,197 @@
+// The way from a run to rows in a file.
+
+#include "demos/hard_cases/report.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "data/core/errors.h"
+#include "demos/hard_cases/case_scenes.h"
+#include "demos/hard_cases/contest.h"
+
+using namespace cloth;
+
+namespace {
+
+const auto quiet = [](int, int, const std::string&) {};
+
+/// A small free sheet that falls, in a case with the given bounds.
+HardCase falling(const Bounds& bounds) {
+    return {"falling", "a sheet falls", 4, bounds, [] {
+                Garment garment("sheet", level_sheet(60), Fabric::soft_cotton());
+                const ClothState start = ClothState::at_rest(garment);
+                const auto outside = [](double, double) {
+                    Boundary boundary;
+                    boundary.pin_targets.resize(0, 3);
+                    return boundary;
+                };
+                return HardSceneParts{std::move(garment), start, outside};
+            }};
+}
+
+/// Does what it is told to the state, from the n-th step on.
+class SpoilingStepper : public Stepper {
+ public:
+    using Spoil = std::function<bool(ClothState&)>;
+    SpoilingStepper(int steps, Spoil spoil, double fixed = 0.0)
+        : m_steps(steps), m_spoil(std::move(spoil)), m_fixed(fixed) {}
+    std::string name() const override { return "spoiling"; }
+    double fixed_dt() const override { return m_fixed; }
+    StepReport step(const Boundary&, double dt, ClothState& state) override {
+        StepReport report;
+        state.time += dt;
+        if (m_done++ >= m_steps) report.finite = m_spoil(state);
+        return report;
+    }
+
+ private:
+    int m_steps;
+    Spoil m_spoil;
+    double m_fixed;
+    int m_done = 0;
+};
+
+HardRun run(const HardCase& hard, SpoilingStepper stepper, HardSceneParts parts) {
+    const HardScene scene(std::move(parts), hard.frames);
+    return run_hard_case(hard, scene, stepper, [](int) {});
+}
+HardRun run(const HardCase& hard, SpoilingStepper stepper) {
+    return run(hard, std::move(stepper), hard.parts());
+}
+
+/// The vertex nearest to the origin.
+Vec3 middle_of(const Points& x) {
+    Eigen::Index middle = 0;
+    x.rowwise().norm().minCoeff(&middle);
+    return x.row(middle);
+}
+
+Bounds strict() {
+    Bounds bounds;
+    bounds.stretch_p99 = 1.5;
+    bounds.rest_jitter_mm = 0.05;
+    return bounds;
+}
+
+}  // namespace
+
+TEST(HardRun, KeepingStillIsHeld) {
+    const HardRun still = run(falling(strict()), {100, [](ClothState&) { return true; }});
+    EXPECT_TRUE(still.held()) << still.failure;
+    EXPECT_EQ(still.frames, 4);
+    EXPECT_EQ(still.x.size(), 3u);
+    EXPECT_EQ(still.rest_jitter_mm, 0.0);
+}
+
+TEST(HardRun, SaysWhatFailedFirstAndWhen) {
+    const auto spoilt = [](SpoilingStepper::Spoil spoil) {
+        return run(falling(strict()), {2, std::move(spoil)});
+    };
+    const HardRun torn = spoilt([](ClothState& s) { return s.x *= 2.0, true; });
+    EXPECT_EQ(torn.first_failed_frame, 2);
+    EXPECT_NE(torn.failure.find("stretched to 2.00"), std::string::npos) << torn.failure;
+    EXPECT_EQ(torn.frames, 4) << "it goes on";
+    const HardRun refused = spoilt([](ClothState&) { return false; });
+    EXPECT_EQ(refused.failure, "not finite");
+    EXPECT_EQ(refused.frames, 3);
+    const HardRun lost = spoilt([](ClothState& s) { return s.x(0, 0) = std::nan(""), true; });
+    EXPECT_FALSE(lost.finite);
+    const HardRun restless = spoilt([](ClothState& s) { return s.x.array() += 1e-4, true; });
+    EXPECT_NE(restless.failure.find("per frame at rest"), std::string::npos) << restless.failure;
+    EXPECT_EQ(restless.first_failed_frame, 3);
+    Bounds lively;
+    lively.least_top_speed = 1.0;
+    const HardRun slow = run(falling(lively), {100, [](ClothState&) { return true; }});
+    EXPECT_NE(slow.failure.find("slow motion"), std::string::npos) << slow.failure;
+}
+
+TEST(HardRun, InsideAnObstacleIsSeenButNotOfPins) {
+    HardSceneParts parts = swing(level_sheet(60), {});
+    const Vec3 pin = parts.start.x.row(parts.garment.pins()[0]);
+    const auto around = [&](const Vec3& centre) {
+        HardSceneParts changed = parts;
+        changed.outside = [=](double t0, double t1) {
+            Boundary boundary = parts.outside(t0, t1);
+            boundary.obstacles = {ball(0.01, centre, centre)};
+            return boundary;
+        };
+        return run(falling({}), {100, [](ClothState&) { return true; }}, changed);
+    };
+    EXPECT_TRUE(around(pin).held()) << around(pin).failure;
+    const HardRun inside = around(middle_of(parts.start.x));
+    EXPECT_NEAR(inside.penetration_mm[0], 10.0, 1e-6);
+    EXPECT_EQ(inside.first_failed_frame, 0);
+}
+
+TEST(HardRun, ALimbThroughAFaceIsSeen) {
+    const TriMesh sheet = level_sheet(60);
+    Boundary boundary;
+    const auto limb_at = [&](const Vec3& p) {
+        boundary.obstacles = {capsule(1e-4, 0.1, placed(p), placed(p))};
+        return is_impaled(boundary, sheet.faces, sheet.vertices);
+    };
+    EXPECT_TRUE(limb_at(Vec3(0.01, 0.05, 0.02)));
+    EXPECT_FALSE(limb_at(Vec3(0.01, 0.15, 0.02))) << "above";
+    EXPECT_FALSE(limb_at(Vec3(0.5, 0.0, 0.0))) << "beside";
+}
+
+TEST(HardRun, AStepperOfAFixedStepTakesSeveralPerFrame) {
+    const HardScene scene(hard_case("step-1-10").parts(), 2);
+    const auto keep = [](ClothState&) { return true; };
+    EXPECT_EQ(not_applicable(SpoilingStepper(0, keep, 1.0 / 30.0), scene), "");
+    EXPECT_EQ(not_applicable(SpoilingStepper(0, keep), scene), "");
+    EXPECT_NE(not_applicable(SpoilingStepper(0, keep, 0.07), scene), "");
+}
+
+TEST(HardReport, RowsComeBackFromTheFile) {
+    const std::string path = ::testing::TempDir() + "hard_cases.json";
+    std::filesystem::remove(path);
+    const HardCase hard = falling({});
+    const HardScene scene(hard.parts(), 4);
+    HardContest contest{&hard, 4, {}, {}};
+    HardReport report(path, /*resume=*/false);
+    for (const char* stepper : {"quasi-newton-3", "xpbd-5"})
+        report.add(run_stepper(contest, scene, stepper, quiet).row);
+    report.add(skipped_row(hard, "reference", "too dear", 4));
+    report.add(refused_row(hard, "fast", "too small", 4));
+
+    const HardReport again(path, /*resume=*/true);
+    ASSERT_EQ(again.rows().size(), 4u);
+    for (size_t k = 0; k < 4; ++k) EXPECT_EQ(to_json(again.rows()[k]), to_json(report.rows()[k]));
+    EXPECT_NE(again.find("falling", "xpbd-5", 4), nullptr);
+    EXPECT_EQ(again.find("falling", "xpbd-5", 5), nullptr) << "another number of frames";
+    const std::string table = markdown(again.rows());
+    EXPECT_NE(table.find("| falling | held | held | not run | frame 0: refused: too small |"),
+              std::string::npos)
+        << table;
+}
+
+TEST(HardReport, TheSchemaIsWhatReadersRelyOn) {
+    const HardCase hard = falling(strict());
+    const HardRow row =
+        make_row(hard, "spoiling", run(hard, {1, [](ClothState&) { return false; }}), 4);
+    const nlohmann::ordered_json json = to_json(row);
+    EXPECT_EQ(json.at("case"), "falling");
+    EXPECT_EQ(json.at("stepper"), "spoiling");
+    EXPECT_EQ(json.at("held"), false);
+    EXPECT_EQ(json.at("finite"), false);
+    EXPECT_EQ(json.at("first_failed_frame"), 1);
+    EXPECT_EQ(json.at("failure"), "not finite");
+    EXPECT_EQ(json.at("frames"), 2);
+    EXPECT_TRUE(json.at("ms_median").is_number());
+    EXPECT_EQ(json.at("penetration_max_mm"), 0.0);
+    EXPECT_EQ(json.at("stretch_p99"), 1.0);
+    const nlohmann::ordered_json skipped = to_json(skipped_row(hard, "reference", "too dear", 4));
+    EXPECT_TRUE(skipped.at("held").is_null());
+    EXPECT_TRUE(skipped.at("stretch_p99").is_null());
+    EXPECT_TRUE(skipped.at("first_failed_frame").is_null());
+    EXPECT_EQ(skipped.at("failure"), "too dear");
+}
+
+TEST(HardReport, ABrokenFileIsNotOverwrittenSilently) {
+    const std::string path = ::testing::TempDir() + "broken_hard_cases.json";
+    std::ofstream(path) << "{\"rows\": [{}]}";
+    EXPECT_THROW(HardReport(path, /*resume=*/true), LoadError);
+}

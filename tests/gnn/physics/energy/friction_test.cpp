@@ -1,0 +1,127 @@
+#include "gnn/physics/energy/friction.h"
+
+#include "tests/gnn/physics/physics_scenes.h"
+
+using namespace cloth;
+using namespace cloth::test;
+
+namespace {
+
+const double pi = std::acos(-1.0);
+
+class FrictionTest : public ::testing::Test {
+ protected:
+    Garment garment{"sheet", sheet(5, 0.2), Fabric::soft_cotton()};
+    ClothState state = ClothState::at_rest(garment);
+    Boundary boundary;
+    FrictionSettings settings;
+    FrictionEnergy friction;
+
+    FrictionTest() {
+        boundary.obstacles.resize(1);
+        boundary.obstacles[0].shape = ObstacleShape::plane;
+        boundary.obstacles[0].friction = 0.4;
+        settings.contact_distance = 4e-3;
+        settings.contact_weight = 5e5;
+    }
+    /// The sheet 5 mm above a plane that moves by `motion` in the step.
+    void begin(const Vec3& normal, const Vec3& motion = Vec3::Zero(), double height = 5e-3) {
+        SurfaceContacts contacts = plane_contacts(state.x, Vec3::Zero(), normal, motion);
+        contacts.distance.setConstant(height);
+        friction.begin_step(garment, state, boundary, contacts, settings);
+    }
+    void gradient(const Points& x, Points& out) const {
+        out.setZero(x.rows(), 3);
+        friction.add_gradient(x, out);
+    }
+    double weight() const { return garment.masses().sum() * 9.81; }
+};
+
+}  // namespace
+
+TEST_F(FrictionTest, LongSlipCostsCoulombForceTimesWay) {
+    begin(Vec3::UnitY());
+    const double way = 0.5;
+    const Points x = state.x.rowwise() + Eigen::RowVector3d(way, 0.3, 0);
+    // The smoothing costs at most `slip` of the way.
+    EXPECT_NEAR(friction.value(x), 0.4 * weight() * way, 0.4 * weight() * 1.01 * settings.slip);
+}
+
+TEST_F(FrictionTest, OnAnInclineTheNormalForceIsTheCosinePart) {
+    const double angle = pi / 6.0;
+    begin(Vec3(std::sin(angle), std::cos(angle), 0));
+    Points g;
+    gradient(state.x.rowwise() + Eigen::RowVector3d(0, 0, 0.1), g);
+    EXPECT_NEAR(g.col(2).sum(), 0.4 * weight() * std::cos(angle), 1e-5 * weight());
+}
+
+TEST_F(FrictionTest, ClothThatMovesWithTheSurfaceFeelsNothing) {
+    const Vec3 motion(0.1, 0.02, -0.05);
+    begin(Vec3::UnitY(), motion);
+    const Points x = state.x.rowwise() + motion.transpose();
+    Points g;
+    gradient(x, g);
+    EXPECT_NEAR(friction.value(x), 0.0, 1e-15);
+    EXPECT_LT(g.norm(), 1e-12);
+    EXPECT_GT(friction.value(state.x), 0.0);
+}
+
+TEST_F(FrictionTest, FollowsGravityNotAnAxis) {
+    boundary.gravity = Vec3(0, 0, -9.81);
+    begin(Vec3::UnitZ());
+    Points g;
+    gradient(state.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0), g);
+    EXPECT_NEAR(g.col(0).sum(), 0.4 * weight(), 1e-5 * weight());
+}
+
+TEST_F(FrictionTest, ACeilingCarriesNoWeight) {
+    begin(-Vec3::UnitY());
+    EXPECT_EQ(friction.value(state.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0)), 0.0);
+}
+
+TEST_F(FrictionTest, PressureHoldsOnAVerticalWallUpToTheLimit) {
+    const Points slid = state.x.rowwise() + Eigen::RowVector3d(0, 0.1, 0);
+    begin(Vec3::UnitZ());
+    EXPECT_EQ(friction.value(slid), 0.0);
+    const double depth = 5e-6;
+    begin(Vec3::UnitZ(), Vec3::Zero(), settings.contact_distance - depth);
+    Points g;
+    gradient(slid, g);
+    const double pressed = 3.0 * settings.contact_weight * depth * depth;
+    const double count = static_cast<double>(state.x.rows());
+    EXPECT_NEAR(g.col(1).sum(), 0.4 * count * pressed, 1e-5 * count * pressed);
+    begin(Vec3::UnitZ(), Vec3::Zero(), 0.0);
+    gradient(slid, g);
+    EXPECT_NEAR(g.col(1).sum(), 0.4 * settings.pressure_limit * weight(), 1e-4 * weight());
+}
+
+TEST_F(FrictionTest, ActsOnlyNearTheSurface) {
+    begin(Vec3::UnitY(), Vec3::Zero(), 7e-3);
+    EXPECT_EQ(friction.value(state.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0)), 0.0);
+}
+
+TEST_F(FrictionTest, GradientEqualsFiniteDifferencesOnBothSidesOfTheSmoothing) {
+    begin(Vec3(0.3, 1.0, 0.2).normalized(), Vec3(0.01, 0, 0));
+    for (double size : {3e-5, 1e-2}) {
+        const Points x =
+            (state.x.rowwise() + Eigen::RowVector3d(0.01, 0, 0)) + noise(state.x.rows(), size, 2);
+        expect_gradient([&](const Points& y) { return friction.value(y); },
+                        [&](const Points& y, Points& g) { gradient(y, g); }, x, 1e-6, 2e-6);
+    }
+}
+
+TEST_F(FrictionTest, HessianEqualsFiniteDifferences) {
+    begin(Vec3(0.3, 1.0, 0.2).normalized());
+    const BlockPattern pattern(garment);
+    const Points x = state.x + noise(state.x.rows(), 2e-4, 2);
+    const Points direction = noise(x.rows(), 1.0, 9);
+    Eigen::SparseMatrix<double> hessian;
+    pattern.reset(hessian);
+    friction.add_hessian(x, pattern, hessian.valuePtr());
+    Points product(x.rows(), 3);
+    Eigen::Map<VectorX>(product.data(), product.size()) =
+        hessian * Eigen::Map<const VectorX>(direction.data(), direction.size());
+    const Points numeric = numeric_hessian_product(
+        [&](const Points& y, Points& g) { gradient(y, g); }, x, direction, 1e-6);
+    expect_close(product, numeric, 1e-6);
+}

@@ -1,0 +1,171 @@
+// Cloth that meets itself, stepped by the solvers.
+
+#include "tests/gnn/physics/stepper/self_contact_scenes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "collision/proximity/metrics.h"
+#include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/newton_stepper.h"
+#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
+
+namespace cloth {
+namespace {
+
+using namespace testing;
+
+constexpr double dt = 1.0 / 30.0;
+
+QuasiNewtonSettings solver(double thickness, int threads = 0) {
+    QuasiNewtonSettings settings;
+    settings.potential.self_contact.thickness = thickness;
+    settings.potential.self_contact.threads = threads;
+    return settings;
+}
+
+/// Steps the scene; the most tangles that any frame ended with, as counted from outside.
+size_t most_tangles(const LayerScene& scene, Stepper& stepper, int frames, ClothState& state) {
+    SelfTangles tangles(scene.garment);
+    size_t most = 0;
+    state = scene.start;
+    EXPECT_TRUE(tangles.find(state.x).empty()) << "tangled before it begins";
+    for (int frame = 0; frame < frames; ++frame) {
+        EXPECT_TRUE(stepper.step(scene.boundary, dt, state).finite);
+        most = std::max(most, tangles.find(state.x).size());
+    }
+    return most;
+}
+
+double least_distance(const Garment& garment, const Points& x) {
+    SelfProximity proximity(garment, 4e-3);
+    proximity.find(x, Points::Zero(x.rows(), 3), 4e-3, 1);
+    double least = 4e-3;
+    for (const SelfPair& pair : proximity.pairs()) least = std::min(least, pair.distance);
+    return least;
+}
+
+}  // namespace
+
+TEST(SelfContactScenes, AFoldedSheetOnTheFloorKeepsItsLayersApart) {
+    const LayerScene scene = folded_sheet();
+    ClothState state;
+    QuasiNewtonStepper without(scene.garment, solver(0.0));
+    EXPECT_GT(most_tangles(scene, without, 15, state), 100u) << "the scene asks for nothing";
+
+    QuasiNewtonStepper with(scene.garment, solver(4e-3));
+    EXPECT_EQ(most_tangles(scene, with, 60, state), 0u);
+    EXPECT_GT(least_distance(scene.garment, state.x), 1e-3);
+    EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.1);
+    EXPECT_LT(std::sqrt(state.v.squaredNorm() / static_cast<double>(state.v.rows())), 0.1);
+}
+
+TEST(SelfContactScenes, ARibbonFallsIntoAPileWithoutATangle) {
+    const LayerScene scene = falling_ribbon();
+    ClothState state;
+    QuasiNewtonStepper without(scene.garment, solver(0.0));
+    EXPECT_GT(most_tangles(scene, without, 15, state), 100u) << "the scene asks for nothing";
+
+    QuasiNewtonStepper with(scene.garment, solver(4e-3));
+    EXPECT_EQ(most_tangles(scene, with, 60, state), 0u);
+    EXPECT_LT(state.x.col(1).maxCoeff(), 0.3) << "it is still in the air";
+    EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.1);
+}
+
+TEST(SelfContactScenes, ASheetThatFallsOnASheetStaysAbove) {
+    const LayerScene scene = sheet_on_sheet();
+    const std::vector<int> piece = garment_pieces(scene.garment);
+    ClothState state;
+    QuasiNewtonStepper stepper(scene.garment, solver(4e-3));
+    EXPECT_EQ(most_tangles(scene, stepper, 30, state), 0u);
+    SelfProximity proximity(scene.garment, 4e-3);
+    proximity.find(state.x, Points::Zero(state.x.rows(), 3), 6e-3, 1);
+    int above = 0, below = 0;
+    for (const SelfPair& pair : proximity.pairs()) {
+        const int first = pair.elements.vertex[0], second = pair.elements.vertex[3];
+        const int side = piece[static_cast<size_t>(first)] - piece[static_cast<size_t>(second)];
+        const Vec3 out = state.x.row(first).normalized();  // the ball is at the origin
+        const double height = side * pair.normal.dot(out);
+        // folds at the hem stand upright: there neither layer is above the other
+        above += height > 0.5;
+        below += height < -0.5;
+    }
+    EXPECT_EQ(below, 0);
+    EXPECT_GT(above, 100);
+}
+
+TEST(SelfContactScenes, ATangledStartIsReportedAndGetsNoWorse) {
+    const LayerScene scene = tangled_sheets(100);
+    SelfTangles tangles(scene.garment);
+    const int tangled = static_cast<int>(tangles.find(scene.start.x).size());
+    ASSERT_GT(tangled, 15);
+    QuasiNewtonStepper stepper(scene.garment, solver(4e-3));
+    ClothState state = scene.start;
+    for (int frame = 0; frame < 20; ++frame) {
+        const StepReport report = stepper.step(scene.boundary, dt, state);
+        ASSERT_TRUE(report.finite);
+        EXPECT_EQ(report.tangles, static_cast<int>(tangles.find(state.x).size()));
+        EXPECT_GT(report.tangles, 0);
+        EXPECT_LE(report.tangles, tangled);
+        EXPECT_EQ(report.first_tangle, tangles.found().front().point);
+    }
+    EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.3);
+}
+
+TEST(SelfContactScenes, TheReferenceKeepsLayersApartToo) {
+    const LayerScene scene = folded_sheet(120, 0.02);
+    NewtonStepperSettings settings;
+    settings.potential.self_contact.thickness = 4e-3;
+    NewtonStepper reference(scene.garment, settings);
+    ClothState state = scene.start;
+    SelfTangles tangles(scene.garment);
+    int converged = 0;
+    for (int frame = 0; frame < 12; ++frame) {
+        const StepReport report = reference.step(scene.boundary, dt, state);
+        ASSERT_TRUE(report.finite);
+        converged += report.converged;
+        EXPECT_TRUE(tangles.find(state.x).empty());
+    }
+    EXPECT_GE(converged, 8);
+}
+
+TEST(SelfContactScenes, SubstepsOfSpringsKeepLayersApartToo) {
+    const LayerScene scene = folded_sheet();
+    XpbdSettings settings;
+    settings.self_contact.thickness = 4e-3;
+    XpbdStepper stepper(scene.garment, settings);
+    ClothState state;
+    EXPECT_EQ(most_tangles(scene, stepper, 30, state), 0u);
+    EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.2);
+}
+
+TEST(SelfContactScenes, ClothThatDoesNotMeetItselfMovesAsWithoutBitByBit) {
+    const Garment garment("sheet", make_sheet(0.3, 0.3, 200), Fabric::soft_cotton());
+    const Boundary boundary = outside({ball(0.15)});
+    QuasiNewtonStepper without(garment, solver(0.0)), with(garment, solver(4e-3));
+    ClothState a = ClothState::at_rest(garment);
+    a.x.col(1).array() += 0.16;
+    ClothState b = a;
+    for (int frame = 0; frame < 5; ++frame) {
+        without.step(boundary, dt, a);
+        with.step(boundary, dt, b);
+    }
+    EXPECT_TRUE(a.x == b.x);
+    EXPECT_TRUE(a.v == b.v);
+}
+
+TEST(SelfContactScenes, SameBitsForAnyNumberOfThreads) {
+    const LayerScene scene = falling_ribbon(200);
+    QuasiNewtonStepper one(scene.garment, solver(4e-3, 1)), three(scene.garment, solver(4e-3, 3));
+    ClothState a = scene.start, b = scene.start;
+    for (int frame = 0; frame < 20; ++frame) {
+        one.step(scene.boundary, dt, a);
+        three.step(scene.boundary, dt, b);
+    }
+    EXPECT_TRUE(a.x == b.x);
+}
+
+}  // namespace cloth
