@@ -18,7 +18,7 @@
 namespace cloth {
 namespace {
 
-using testing::LayerScene;
+using test::LayerScene;
 
 constexpr double dt = 1.0 / 30.0, thickness = 4e-3;
 constexpr int frames_before = 12;
@@ -27,7 +27,7 @@ LayerScene draped_sheet(int vertices) {
     Garment garment("sheet", make_sheet(0.5, 0.5, vertices), Fabric::soft_cotton());
     ClothState start = ClothState::at_rest(garment);
     start.x.col(1).array() += 0.16;
-    return {std::move(garment), std::move(start), testing::outside({testing::ball(0.15)})};
+    return {std::move(garment), std::move(start), test::outside({test::ball(0.15)})};
 }
 
 QuasiNewtonSettings solver(double layer_thickness) {
@@ -52,7 +52,7 @@ const Moment& moment(bool meets, int vertices) {
     static std::map<std::pair<bool, int>, std::unique_ptr<Moment>> made;
     std::unique_ptr<Moment>& it = made[{meets, vertices}];
     if (!it)
-        it = std::make_unique<Moment>(meets ? testing::folded_sheet(vertices)
+        it = std::make_unique<Moment>(meets ? test::folded_sheet(vertices)
                                             : draped_sheet(vertices));
     return *it;
 }

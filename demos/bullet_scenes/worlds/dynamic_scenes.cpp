@@ -1,4 +1,4 @@
-#include "demos/bullet_scenes/worlds/scenes.h"
+#include "scenes.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "demos/bullet_scenes/worlds/scenes.h"
+#include "scenes.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "demos/bullet_scenes/worlds/scene_world.h"
+#include "scene_world.h"
 
 SceneWorld::SceneWorld(btSoftBodySolver* solver)
     : m_dispatcher(&m_config),

@@ -1,4 +1,4 @@
-#include "demos/bullet_scenes/worlds/scenes.h"
+#include "scenes.h"
 
 const std::vector<SceneRecipe>& sceneRecipes() {
     static const std::vector<SceneRecipe> recipes = [] {

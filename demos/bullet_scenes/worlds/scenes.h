@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "demos/bullet_scenes/worlds/scene_world.h"
+#include "scene_world.h"
 
 /// One scene: what the demos of Bullet's cloth show, each small enough to look at.
 struct SceneRecipe {

@@ -24,7 +24,7 @@ class SilentPredictor : public Predictor {
 
 /// The most tangles of a frame while a folded sheet falls on the floor.
 int most_tangles(double thickness) {
-    const testing::LayerScene scene = testing::folded_sheet(200, 0.02);
+    const test::LayerScene scene = test::folded_sheet(200, 0.02);
     LearnedStepperSettings settings;
     settings.potential.self_contact.thickness = thickness;
     LearnedStepper learned(scene.garment, std::make_shared<SilentPredictor>(), settings);

@@ -13,11 +13,11 @@
 namespace cloth {
 namespace {
 
-using testing::noise;
-using testing::sheet;
-using testing::sheet_on_sphere;
-using testing::SolverScene;
-using testing::swinging_sheet;
+using test::noise;
+using test::sheet;
+using test::sheet_on_sphere;
+using test::SolverScene;
+using test::swinging_sheet;
 
 constexpr double dt = 1.0 / 30.0;
 
@@ -309,7 +309,7 @@ TEST_P(QuasiNewtonOnScenes, PinsStayWhereTheyWerePut) {
 
 INSTANTIATE_TEST_SUITE_P(Fabrics, QuasiNewtonOnScenes,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
-                         testing::fabric_name);
+                         test::fabric_name);
 
 TEST(QuasiNewton, ContactInTheMatrixSavesIterations) {
     const SolverScene scene = sheet_on_sphere(14);

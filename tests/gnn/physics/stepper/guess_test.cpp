@@ -9,10 +9,10 @@
 namespace cloth {
 namespace {
 
-using testing::plane_contacts;
-using testing::sheet_on_sphere;
-using testing::SolverScene;
-using testing::swinging_sheet;
+using test::plane_contacts;
+using test::sheet_on_sphere;
+using test::SolverScene;
+using test::swinging_sheet;
 
 constexpr double dt = 1.0 / 30.0;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();

@@ -11,9 +11,9 @@
 namespace cloth {
 namespace {
 
-using testing::sheet_on_sphere;
-using testing::SolverScene;
-using testing::swinging_sheet;
+using test::sheet_on_sphere;
+using test::SolverScene;
+using test::swinging_sheet;
 
 constexpr double dt = 1.0 / 30.0;
 

@@ -16,7 +16,7 @@
 namespace cloth {
 namespace {
 
-using namespace testing;
+using namespace test;
 
 constexpr double dt = 1.0 / 30.0;
 
