@@ -6,14 +6,14 @@ cd "$(dirname "$0")/.."
 # compiled objects are found again in another checkout
 export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 
-demos/install_packages.sh
+demos/install_packages.sh demo
 echo "== configure and build"
-cmake --preset release -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
-cmake --build --preset release
+cmake --preset demo -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
+cmake --build --preset demo --target compare
 
 out="out/compare"
 echo "== T-shirt on motion 01_01: comparing solvers"
-build/release/demos/compare --garment tshirt --motion 01_01 --frames 90 \
+build/demo/demos/compare --garment tshirt --motion 01_01 --frames 90 \
   --solvers bullet,bullet-fine,quasi-newton-10,quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+0 --out "$out" "$@"
 echo "video:  $PWD/$out/comparison.mp4"
 echo "report: $PWD/$out/report.html"
