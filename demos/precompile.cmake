@@ -10,6 +10,8 @@ foreach(target ${serial} ${parallel})
   # Files with flags of their own read what they need themselves: headers that are compiled for
   # another instruction set must not get into them.
   get_target_property(sources ${target} SOURCES)
+  get_target_property(folder ${target} SOURCE_DIR)
+  list(TRANSFORM sources PREPEND ${folder}/)
   foreach(source ${sources})
     get_source_file_property(options ${source} TARGET_DIRECTORY ${target} COMPILE_OPTIONS)
     if(options)
