@@ -1,21 +1,29 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that building and running FastCloth needs. Does nothing, without
 # the network, when they are there already. Needs root or sudo only when something is missing.
-#   CLOTH_WITH_TORCH=0  leaves LibTorch out
+#   demos/install_packages.sh          everything
+#   demos/install_packages.sh notorch  all but LibTorch, which training needs
+#   demos/install_packages.sh demo     what demos/run.sh builds: the runtime, pictures and videos
 set -euo pipefail
 
 packages=(
   g++ cmake ninja-build pkg-config ccache
-  libbullet-dev libfcl-dev libeigen3-dev libassimp-dev assimp-testmodels
+  libbullet-dev libfcl-dev libeigen3-dev libassimp-dev assimp-testmodels nlohmann-json3-dev
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libcgal-dev libsuitesparse-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev
 )
-if [ "${CLOTH_WITH_TORCH:-1}" != 0 ]; then
-  # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
-  packages+=(libtorch-dev libopenblas0)
-fi
+tests=(libcgal-dev libgtest-dev libbenchmark-dev)
+# without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
+training=(libtorch-dev libopenblas0)
+case "${1:-all}" in
+  demo) ;;
+  notorch) packages+=("${tests[@]}") ;;
+  all) packages+=("${tests[@]}" "${training[@]}") ;;
+  *)
+    echo "usage: demos/install_packages.sh [all|notorch|demo]" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

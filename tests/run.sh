@@ -8,7 +8,7 @@ export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1
 preset="${1:-release}"
 
 case "$preset" in
-  asan | notorch) CLOTH_WITH_TORCH=0 demos/install_packages.sh ;;
+  asan | notorch) demos/install_packages.sh notorch ;;
   *) demos/install_packages.sh ;;
 esac
 
