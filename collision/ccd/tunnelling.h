@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "collision/ccd/motion_tree.h"
+#include "collision/geometry/motion_tree.h"
 #include "collision/proximity/proximity.h"
 #include "collision/proximity/surface_samples.h"
 
