@@ -1,14 +1,14 @@
 #include "collision/proximity/obstacle_trees.h"
 
-#include <cmath>
+#include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "collision/geometry/faces_in_range.h"
 #include "collision/geometry/motion_tree.h"
 #include "collision/proximity/mesh_surface.h"
 #include "collision/proximity/tree_fits.h"
-#include "data/core/check_range.h"
 
 namespace cloth {
 namespace {
@@ -47,12 +47,16 @@ bool are_same(const Points& a, const Points& b) {
 
 }  // namespace
 
-struct ObstacleTrees::Impl {
-    ObstacleTreesSettings settings;
-    mutable std::mutex mutex;  // of all that follows
-    long step = 0;
-    Counts counts;
-    std::vector<KnownMesh> meshes;
+struct ObstacleTrees::KnownMeshes : Meshes {
+    explicit KnownMeshes(const ObstacleTreesSettings& asked) : settings(asked) {}
+
+    void begin_step() override {
+        ++step;
+        const auto is_forgotten = [&](const KnownMesh& mesh) {
+            return step - mesh.last_step > settings.forget_after;
+        };
+        meshes.erase(std::remove_if(meshes.begin(), meshes.end(), is_forgotten), meshes.end());
+    }
 
     /// Null: the mesh is unusable.
     KnownMesh* find(const Obstacle& mesh) {
@@ -79,78 +83,69 @@ struct ObstacleTrees::Impl {
         return std::make_unique<FittedMotion>(
             FittedMotion{MotionTree(mesh.x0, *mesh.faces), {}, {}});
     }
+
+    std::shared_ptr<const MeshSurface> surface(const Obstacle& obstacle, const Points& x) {
+        KnownMesh* mesh = find(obstacle);
+        if (!mesh) return nullptr;
+        const auto is_here = [&](const MeshSurface& surface) {
+            return are_same(surface.vertices(), x);
+        };
+        if (auto known = mesh->surfaces.find(step, is_here)) return known;
+        std::unique_ptr<MeshSurface> surface = mesh->surfaces.take(step);
+        if (!surface) surface = build_surface(obstacle);
+        surface->refit(x);
+        ++counts.surface_fits;
+        return mesh->surfaces.add(step, std::move(surface));
+    }
+
+    std::shared_ptr<const FittedMotion> motion(const Obstacle& obstacle) {
+        KnownMesh* mesh = find(obstacle);
+        if (!mesh) return nullptr;
+        const auto is_it = [&](const FittedMotion& motion) {
+            return are_same(motion.x0, obstacle.x0) && are_same(motion.x1, obstacle.x1);
+        };
+        if (auto known = mesh->motions.find(step, is_it)) return known;
+        if (!obstacle.x0.allFinite() || !obstacle.x1.allFinite()) return nullptr;
+        std::unique_ptr<FittedMotion> motion = mesh->motions.take(step);
+        if (!motion) motion = build_motion(obstacle);
+        motion->fit(obstacle);
+        ++counts.motion_fits;
+        return mesh->motions.add(step, std::move(motion));
+    }
+
+    ObstacleTreesSettings settings;
+    long step = 0;
+    Counts counts;
+    std::vector<KnownMesh> meshes;
 };
 
-ObstacleTrees::ObstacleTrees(const ObstacleTreesSettings& settings)
-    : m_impl(std::make_unique<Impl>()) {
-    if (!(settings.radius > 0.0) || !std::isfinite(settings.radius))
-        throw ArgumentError("ObstacleTreesSettings.radius", "it is not positive and finite",
-                            "give the largest radius of queries (m)");
-    check_range("ObstacleTreesSettings.forget_after", settings.forget_after, 1, 1e6);
-    m_impl->settings = settings;
-}
-
-ObstacleTrees::~ObstacleTrees() = default;
-
-const ObstacleTreesSettings& ObstacleTrees::settings() const {
-    return m_impl->settings;
-}
-
-void ObstacleTrees::begin_step() {
-    const std::lock_guard<std::mutex> lock(m_impl->mutex);
-    ++m_impl->step;
-    std::vector<KnownMesh>& meshes = m_impl->meshes;
-    const auto is_forgotten = [&](const KnownMesh& mesh) {
-        return m_impl->step - mesh.last_step > m_impl->settings.forget_after;
-    };
-    meshes.erase(std::remove_if(meshes.begin(), meshes.end(), is_forgotten), meshes.end());
+ObstacleTrees::KnownMeshes& ObstacleTrees::known() {
+    if (!m_meshes) m_meshes = std::make_unique<KnownMeshes>(m_settings);
+    return static_cast<KnownMeshes&>(*m_meshes);
 }
 
 std::shared_ptr<const MeshSurface> ObstacleTrees::surface(const Obstacle& obstacle, StepEnd end) {
     if (!is_mesh(obstacle)) return nullptr;
-    const Points& x = end == StepEnd::start ? obstacle.x0 : obstacle.x1;
-    const std::lock_guard<std::mutex> lock(m_impl->mutex);
-    KnownMesh* mesh = m_impl->find(obstacle);
-    if (!mesh) return nullptr;
-    const auto is_here = [&](const MeshSurface& surface) {
-        return are_same(surface.vertices(), x);
-    };
-    if (auto known = mesh->surfaces.find(m_impl->step, is_here)) return known;
-    std::unique_ptr<MeshSurface> surface = mesh->surfaces.take(m_impl->step);
-    if (!surface) surface = m_impl->build_surface(obstacle);
-    surface->refit(x);
-    ++m_impl->counts.surface_fits;
-    return mesh->surfaces.add(m_impl->step, std::move(surface));
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    return known().surface(obstacle, end == StepEnd::start ? obstacle.x0 : obstacle.x1);
 }
 
 std::shared_ptr<const MotionTree> ObstacleTrees::motion(const Obstacle& obstacle) {
     if (!is_mesh(obstacle)) return nullptr;
-    const std::lock_guard<std::mutex> lock(m_impl->mutex);
-    KnownMesh* mesh = m_impl->find(obstacle);
-    if (!mesh) return nullptr;
-    const auto is_it = [&](const FittedMotion& motion) {
-        return are_same(motion.x0, obstacle.x0) && are_same(motion.x1, obstacle.x1);
-    };
-    auto found = mesh->motions.find(m_impl->step, is_it);
-    if (!found) {
-        if (!obstacle.x0.allFinite() || !obstacle.x1.allFinite()) return nullptr;
-        std::unique_ptr<FittedMotion> motion = mesh->motions.take(m_impl->step);
-        if (!motion) motion = m_impl->build_motion(obstacle);
-        motion->fit(obstacle);
-        ++m_impl->counts.motion_fits;
-        found = mesh->motions.add(m_impl->step, std::move(motion));
-    }
-    return {found, &found->tree};
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    const std::shared_ptr<const FittedMotion> motion = known().motion(obstacle);
+    return motion ? std::shared_ptr<const MotionTree>(motion, &motion->tree) : nullptr;
 }
 
 ObstacleTrees::Counts ObstacleTrees::counts() const {
-    const std::lock_guard<std::mutex> lock(m_impl->mutex);
-    return m_impl->counts;
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    return m_meshes ? static_cast<const KnownMeshes&>(*m_meshes).counts : Counts();
 }
 
 int ObstacleTrees::meshes() const {
-    const std::lock_guard<std::mutex> lock(m_impl->mutex);
-    return static_cast<int>(m_impl->meshes.size());
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    return m_meshes ? static_cast<int>(static_cast<const KnownMeshes&>(*m_meshes).meshes.size())
+                    : 0;
 }
 
 }  // namespace cloth

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 
 #include "data/core/boundary.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 
@@ -10,9 +12,8 @@ class MeshSurface;
 class MotionTree;
 
 struct ObstacleTreesSettings {
-    double radius = 0.5;  ///< the largest radius of queries (m), positive
-    int forget_after =
-        1000;  ///< steps in which a mesh is not shown until it is forgotten, 1 to 1e6
+    double radius = 0.5;      ///< the largest radius of queries (m), 1e-6 to 1e6
+    int forget_after = 1000;  ///< steps until a mesh that none shows is forgotten, 1 to 1e6
 };
 
 /// The bounding volume hierarchies of a world's mesh obstacles: built once, fitted once to each
@@ -44,15 +45,20 @@ class ObstacleTrees {
     };
 
     /// @throws ArgumentError if a setting is out of range
-    explicit ObstacleTrees(const ObstacleTreesSettings& settings = {});
-    ~ObstacleTrees();
+    explicit ObstacleTrees(const ObstacleTreesSettings& settings = {}) : m_settings(settings) {
+        check_range("ObstacleTreesSettings.radius", settings.radius, 1e-6, 1e6);
+        check_range("ObstacleTreesSettings.forget_after", settings.forget_after, 1, 1e6);
+    }
     ObstacleTrees(const ObstacleTrees&) = delete;
     ObstacleTrees& operator=(const ObstacleTrees&) = delete;
 
-    const ObstacleTreesSettings& settings() const;
+    const ObstacleTreesSettings& settings() const { return m_settings; }
 
     /// Starts a step: poses of the step before the last are given up.
-    void begin_step();
+    void begin_step() {
+        const std::lock_guard<std::mutex> lock(m_mutex);
+        if (m_meshes) m_meshes->begin_step();
+    }
 
     /// The surface of a mesh obstacle at one end of the step. It stays as it is while it is held.
     /// Null: the obstacle is no mesh, has no faces or some out of range, or x0 and x1 differ in
@@ -68,8 +74,18 @@ class ObstacleTrees {
     int meshes() const;
 
  private:
-    struct Impl;
-    std::unique_ptr<Impl> m_impl;
+    /// Made when the first mesh is shown. So a world can own an ObstacleTrees, and hand it on,
+    /// without linking this library: Bullet's users may bring steppers that do without.
+    struct Meshes {
+        virtual ~Meshes() = default;
+        virtual void begin_step() = 0;
+    };
+    struct KnownMeshes;
+    KnownMeshes& known();
+
+    ObstacleTreesSettings m_settings;
+    mutable std::mutex m_mutex;  ///< of what follows
+    std::unique_ptr<Meshes> m_meshes;
 };
 
 }  // namespace cloth
