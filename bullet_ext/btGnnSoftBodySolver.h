@@ -104,6 +104,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     const cloth::Garment* garmentOf(const btSoftBody* body) const;
     /// Report of the body's last step; null if there was none.
     const cloth::StepReport* reportOf(const btSoftBody* body) const;
+    /// The hierarchies of the world's mesh obstacles, which all cloth shares: what they cost.
+    const cloth::ObstacleTrees& obstacleTrees() const { return *m_obstacles.trees(); }
 
     /// Gives the surface of an animated obstacle before each stepSimulation(): it replaces the
     /// shape of `object` (any object of the world; its collision filter and friction are used).

@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -98,9 +99,13 @@ void sortByGeometry(std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
+BulletObstacles::BulletObstacles() : m_trees(std::make_shared<ObstacleTrees>()) {
+}
+
 void BulletObstacles::beginStep(double h) {
     m_h = h;
     ++m_step;
+    m_trees->begin_step();
     for (auto& [object, animation] : m_animated) {
         if (animation.mesh.duration <= 0.0) animation.mesh.duration = h;
         animation.begin = animation.end;

@@ -59,6 +59,8 @@ struct NearObject {
 /// the present step are extrapolated with the velocity of the step.
 class BulletObstacles {
  public:
+    BulletObstacles();
+
     /// Starts a world step of h seconds.
     void beginStep(double h);
 
@@ -80,6 +82,9 @@ class BulletObstacles {
     /// All objects that near() would look at, in a fixed order.
     std::vector<NearObject> objectsNear(const btSoftBody& body, const Vec3& low,
                                         const Vec3& high) const;
+
+    /// Hierarchies of the mesh obstacles, for the Boundary of every garment in the world.
+    const std::shared_ptr<ObstacleTrees>& trees() const { return m_trees; }
 
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
@@ -119,6 +124,7 @@ class BulletObstacles {
 
     double m_h = 0.0;
     long m_step = 0;
+    std::shared_ptr<ObstacleTrees> m_trees;
     std::map<const btCollisionObject*, Track> m_tracks;
     std::map<const btCollisionObject*, Animation> m_animated;
     std::vector<std::string> m_messages;

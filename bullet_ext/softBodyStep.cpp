@@ -195,6 +195,7 @@ Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles, const Vec
     boundary.pin_targets = pinsAt(m_cloth_step.begin + m_cloth_step.length);
     boundary.obstacles = obstacles.near(
         m_body, low, high, {m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
+    boundary.trees = obstacles.trees();
     if (!m_impulse.isZero(0.0)) {
         boundary.accelerations = m_impulse / m_cloth_step.length;
         for (int i = 0; i < m_body.m_nodes.size(); ++i)

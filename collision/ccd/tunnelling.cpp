@@ -7,9 +7,9 @@
 
 #include "collision/ccd/fcl_sweep.h"
 #include "collision/ccd/primitive_sweep.h"
-#include "collision/geometry/faces_in_range.h"
 #include "collision/geometry/gather_in_order.h"
 #include "collision/geometry/triangle.h"
+#include "collision/proximity/obstacle_trees.h"
 
 namespace cloth {
 namespace {
@@ -19,6 +19,7 @@ constexpr double least_thickness = 5e-3;  // m: thinner solids are not reported
 // Way in each coordinate that a point makes at least, relative to what it goes through.
 constexpr float least_motion = static_cast<float>(0.577 * least_thickness);
 constexpr int points_per_part = 256;  // that a thread takes at once
+constexpr ObstacleTreesSettings own_trees{0.5, 64};
 
 using Corners = std::array<Vec3, 3>;
 
@@ -68,22 +69,18 @@ bool is_before(const Place& a, const Place& b) {
 
 }  // namespace
 
-/// The tree of a mesh, found again by its faces.
-struct TunnellingDetector::MovingMesh {
-    std::shared_ptr<const Faces> faces;  ///< held, so that the pointer stays a key
-    Eigen::Index vertex_count;
-    std::unique_ptr<MotionTree> tree;  ///< null: the faces are unusable
-    bool used;
-};
-
 /// A point's first way into an obstacle and its last way out of it.
 struct TunnellingDetector::Crossing {
     int point = -1;
     Place in, out;
 };
 
-TunnellingDetector::TunnellingDetector(const Garment& garment)
-    : m_samples(garment), m_pinned(garment.is_pinned()) {
+TunnellingDetector::TunnellingDetector(const Garment& garment, std::shared_ptr<ObstacleTrees> trees)
+    : m_samples(garment),
+      m_pinned(garment.is_pinned()),
+      m_owns_trees(!trees),
+      m_trees(trees ? std::move(trees) : std::make_shared<ObstacleTrees>(own_trees)),
+      m_proximity({}, m_trees) {
     m_proximity.query(garment.rest().vertices, Boundary(),
                       m_contacts);  // gives the rows their size
 }
@@ -99,17 +96,6 @@ double TunnellingDetector::thinnest() const {
     double thinnest = std::numeric_limits<double>::infinity();
     for (const auto& [solid, thickness] : solids) thinnest = std::min(thinnest, thickness);
     return thinnest;
-}
-
-TunnellingDetector::MovingMesh& TunnellingDetector::moving(const Obstacle& mesh) {
-    for (const auto& known : m_meshes)
-        if (known->faces == mesh.faces && known->vertex_count == mesh.x0.rows()) return *known;
-    std::unique_ptr<MotionTree> tree;
-    if (faces_in_range(*mesh.faces, mesh.x0.rows()))
-        tree = std::make_unique<MotionTree>(mesh.x0, *mesh.faces);
-    m_meshes.push_back(std::make_unique<MovingMesh>(
-        MovingMesh{mesh.faces, mesh.x0.rows(), std::move(tree), false}));
-    return *m_meshes.back();
 }
 
 /// Where a point that moves from p0 to p1 crosses the faces of a mesh.
@@ -174,12 +160,9 @@ void TunnellingDetector::report(const Crossing& crossing, int obstacle,
 void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0,
                                       const Points& x1, int threads) {
     const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
-    if (!mesh.faces || mesh.x0.rows() != mesh.x1.rows()) return;
-    MovingMesh& body = moving(mesh);
-    body.used = true;
-    if (!body.tree || !mesh.x0.allFinite() || !mesh.x1.allFinite()) return;
-    m_motion = mesh.x1 - mesh.x0;
-    body.tree->refit(mesh.x0, m_motion);
+    const std::shared_ptr<const MotionTree> tree =
+        (boundary.trees ? *boundary.trees : *m_trees).motion(mesh);
+    if (!tree) return;
     const int count = static_cast<int>(x0.rows());
     const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
     const auto find_part = [&](int part, std::vector<Crossing>& out) {
@@ -188,7 +171,7 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
         for (int i = part * points_per_part; i < end; ++i) {
             if (m_pinned[static_cast<size_t>(i)]) continue;
             const LimbSet ignored = limbs ? ignored_limbs(boundary, i) : 0;
-            Crossing crossing = cross(mesh, *body.tree, x0.row(i), x1.row(i), ignored, stack);
+            Crossing crossing = cross(mesh, *tree, x0.row(i), x1.row(i), ignored, stack);
             if (!crossing.in.known && !crossing.out.known) continue;
             crossing.point = i;
             out.push_back(crossing);
@@ -230,7 +213,7 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
 const std::vector<Tunnelling>& TunnellingDetector::find(const Boundary& boundary, const Points& x0,
                                                         const Points& x1, int threads) {
     m_found.clear();
-    for (const auto& mesh : m_meshes) mesh->used = false;
+    if (m_owns_trees) m_trees->begin_step();
     for (int k = 0; k < static_cast<int>(boundary.obstacles.size()); ++k) {
         const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(k)];
         if (obstacle.shape == ObstacleShape::mesh)
@@ -238,9 +221,6 @@ const std::vector<Tunnelling>& TunnellingDetector::find(const Boundary& boundary
         else
             find_in_primitive(boundary, k, x0, x1);
     }
-    m_meshes.erase(std::remove_if(m_meshes.begin(), m_meshes.end(),
-                                  [](const auto& mesh) { return !mesh->used; }),
-                   m_meshes.end());
     return m_found;
 }
 

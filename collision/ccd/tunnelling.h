@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "collision/ccd/motion_tree.h"
+#include "collision/geometry/motion_tree.h"
 #include "collision/proximity/proximity.h"
 #include "collision/proximity/surface_samples.h"
 
@@ -34,12 +34,14 @@ struct Tunnelling {
 /// solid. In a mesh without limbs it counts as one: there, the finer steps that follow keep cloth
 /// from being torn between surfaces that close on it.
 ///
-/// Meshes: a hierarchy of FCL's, told apart by relative motion, and FCL's continuous test of point
-/// and triangle. Primitives: conservative advancement in their own frame; that costs so little that
-/// face centres and edge midpoints are followed too.
+/// Meshes: a hierarchy of FCL's (ObstacleTrees, as in Proximity), told apart by relative motion,
+/// and FCL's continuous test of point and triangle. Primitives: conservative advancement in their
+/// own frame; that costs so little that face centres and edge midpoints are followed too.
 class TunnellingDetector {
  public:
-    explicit TunnellingDetector(const Garment& garment);
+    /// @param trees  see Proximity
+    explicit TunnellingDetector(const Garment& garment,
+                                std::shared_ptr<ObstacleTrees> trees = nullptr);
     ~TunnellingDetector();
 
     /// Replaces found(), whose order depends on the arguments alone. Unusable obstacles (see
@@ -56,10 +58,8 @@ class TunnellingDetector {
     double thinnest() const;
 
  private:
-    struct MovingMesh;
     struct Crossing;
 
-    MovingMesh& moving(const Obstacle& mesh);
     void find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
                            const Points& x1);
     void find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0, const Points& x1,
@@ -71,11 +71,11 @@ class TunnellingDetector {
 
     SurfaceSamples m_samples;
     std::vector<char> m_pinned;  ///< |V|
-    std::vector<std::unique_ptr<MovingMesh>> m_meshes;
     std::vector<Crossing> m_crossings;
     std::vector<std::vector<Crossing>> m_parts;
     std::vector<int> m_rows;
-    Points m_motion;  ///< of a mesh's vertices (m)
+    bool m_owns_trees;                       ///< whether they are of this object alone
+    std::shared_ptr<ObstacleTrees> m_trees;  ///< used where Boundary::trees is null
     Proximity m_proximity;
     SurfaceContacts m_contacts;  ///< |V|
     std::vector<Tunnelling> m_found;

@@ -1,6 +1,7 @@
 #include "collision/proximity/limb_overlap.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "data/core/check_range.h"
 
@@ -13,7 +14,8 @@ LimbSet only(size_t limb) {
 
 }  // namespace
 
-LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings) : m_settings(settings) {
+LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings, std::shared_ptr<ObstacleTrees> trees)
+    : m_settings(settings), m_proximity({}, std::move(trees)) {
     check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
     check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
     check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);

@@ -36,8 +36,10 @@ struct LimbOverlapSettings {
 /// numbers only. What it decides depends on the steps before.
 class LimbOverlap {
  public:
+    /// @param trees  see Proximity
     /// @throws ArgumentError if a setting is out of range
-    explicit LimbOverlap(const LimbOverlapSettings& settings = {});
+    explicit LimbOverlap(const LimbOverlapSettings& settings = {},
+                         std::shared_ptr<ObstacleTrees> trees = nullptr);
 
     /// The boundary with Boundary::ignored_limbs of the step that begins; itself, if no vertex
     /// ignores any. It is valid until the next call.

@@ -58,7 +58,7 @@ MeshSurface::MeshSurface(std::shared_ptr<const Faces> faces, const Points& verti
                          const std::vector<std::uint8_t>* limbs)
     : m_faces(std::move(faces)),
       m_tree(vertices, *m_faces, radius, limbs),
-      m_vertex_faces(vertices, *m_faces) {
+      m_vertex_faces(std::make_shared<const VertexFaces>(vertices, *m_faces)) {
 }
 
 SurfaceHit MeshSurface::closest(const Vec3& q, double radius, int hint,
@@ -115,7 +115,7 @@ int MeshSurface::corner_at(int face, int vertex) const {
     for (int k = 0; k < 3; ++k) {
         const int corner = (*m_faces)(face, k);
         if (corner == vertex) return k;
-        if (m_vertex_faces.welded(corner) == m_vertex_faces.welded(vertex) &&
+        if (m_vertex_faces->welded(corner) == m_vertex_faces->welded(vertex) &&
             m_tree.vertices().row(corner) == m_tree.vertices().row(vertex))
             return k;
     }
@@ -135,7 +135,7 @@ SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away,
     int front = -1, back = -1;  // the faces most squarely before and behind the point
     double front_height = 0.0, back_height = 0.0, weighted = 0.0;
     bool at_border = false;  // of a limb that is passed over
-    for (const int* face = m_vertex_faces.begin(ends[0]); face != m_vertex_faces.end(ends[0]);
+    for (const int* face = m_vertex_faces->begin(ends[0]); face != m_vertex_faces->end(ends[0]);
          ++face) {
         const int pivot = corner_at(*face, ends[0]);
         if (pivot < 0 || (ends[1] >= 0 && corner_at(*face, ends[1]) < 0)) continue;

@@ -34,7 +34,7 @@ class VertexFaces {
     std::vector<int> m_faces;  ///< faces by representative vertex, ascending
 };
 
-/// A moving mesh that answers signed closest-point queries.
+/// A moving mesh that answers signed closest-point queries. Copies share what does not move.
 ///
 /// The sign comes from the pseudonormal of the closest feature: the face's normal, the sum of the
 /// normals of the faces at an edge, or their sum weighted by angle at a vertex (Baerentzen and
@@ -59,7 +59,7 @@ class MeshSurface {
                 LimbSet ignored = 0) const;
 
     const std::shared_ptr<const Faces>& faces() const { return m_faces; }
-    Eigen::Index vertex_count() const { return m_tree.vertices().rows(); }
+    const Points& vertices() const { return m_tree.vertices(); }
 
  private:
     Vec3 normal(int face) const;
@@ -70,7 +70,7 @@ class MeshSurface {
 
     std::shared_ptr<const Faces> m_faces;
     ClosestFaceTree m_tree;
-    VertexFaces m_vertex_faces;
+    std::shared_ptr<const VertexFaces> m_vertex_faces;
 };
 
 }  // namespace cloth

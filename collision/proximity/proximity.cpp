@@ -10,6 +10,7 @@
 #include "collision/geometry/primitives.h"
 #include "collision/geometry/triangle.h"
 #include "collision/proximity/mesh_surface.h"
+#include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -17,29 +18,29 @@ namespace cloth {
 namespace {
 
 constexpr double no_distance = std::numeric_limits<double>::infinity();
-constexpr long forget_after = 64;    // queries
+constexpr int forget_after = 64;     // queries
 constexpr size_t max_hint_sets = 4;  // sets of query points of different size
 constexpr int min_parallel = 512;    // points; fewer are not worth waking threads
 
 /// The closest face of each point in the last query of as many points.
 using Hints = std::vector<int>;
 
-struct CachedMesh {
+/// What is remembered of a mesh between queries.
+struct KnownMesh {
     std::shared_ptr<const Faces> faces;  // held, so that the pointer stays a key
     std::shared_ptr<const std::vector<std::uint8_t>> limbs;
     int occurrence;  // the same faces may stand in one boundary several times
     long last_seen;
-    std::unique_ptr<MeshSurface> surface;  // null: the faces are unusable
-    std::vector<Hints> hint_sets;          // the latest first
+    std::vector<Hints> hint_sets;  // the latest first
 };
 
 /// One usable obstacle of the boundary, ready for queries.
 struct Target {
     int index;
     const Obstacle* obstacle;
-    const MeshSurface* surface;  // null: a primitive
-    int* hints;                  // mesh: |points|
-    Pose to_local;               // primitive: from the world to its frame
+    std::shared_ptr<const MeshSurface> surface;  // null: a primitive
+    int* hints;                                  // mesh: |points|
+    Pose to_local;                               // primitive: from the world to its frame
 };
 
 /// The nearest surface point found so far for one query point.
@@ -50,7 +51,7 @@ struct Nearest {
     PrimitiveHit on_primitive;
 };
 
-int* hints_for(CachedMesh& mesh, size_t count) {
+int* hints_for(KnownMesh& mesh, size_t count) {
     auto& sets = mesh.hint_sets;
     auto found = std::find_if(sets.begin(), sets.end(),
                               [&](const Hints& hints) { return hints.size() == count; });
@@ -151,8 +152,10 @@ void resize(SurfaceContacts& contacts, Eigen::Index count) {
 
 struct Proximity::Impl {
     ProximitySettings settings;
+    std::shared_ptr<ObstacleTrees> given;  // or null
+    ObstacleTrees own;
     long queries = 0;
-    std::vector<CachedMesh> meshes;
+    std::vector<KnownMesh> meshes;
     std::vector<Target> targets;
     std::vector<ClosestFaceTree::Stack> stacks;  // one per thread
 
@@ -160,9 +163,20 @@ struct Proximity::Impl {
         return settings.threads > 0 ? settings.threads : omp_get_max_threads();
     }
 
-    CachedMesh& cached(const Obstacle& obstacle, const Points& x) {
+    Impl(const ProximitySettings& asked, std::shared_ptr<ObstacleTrees> trees)
+        : settings(asked),
+          given(std::move(trees)),
+          own(ObstacleTreesSettings{asked.radius, forget_after}) {}
+
+    ObstacleTrees& trees_for(const Boundary& boundary) {
+        for (ObstacleTrees* trees : {boundary.trees.get(), given.get()})
+            if (trees && trees->settings().radius >= settings.radius) return *trees;
+        return own;
+    }
+
+    KnownMesh& known(const Obstacle& obstacle) {
         int occurrence = 0;
-        for (CachedMesh& mesh : meshes) {
+        for (KnownMesh& mesh : meshes) {
             if (mesh.faces != obstacle.faces || mesh.limbs != obstacle.limbs) continue;
             if (mesh.last_seen == queries) {
                 ++occurrence;
@@ -170,40 +184,34 @@ struct Proximity::Impl {
             }
             if (mesh.occurrence == occurrence) return mesh;
         }
-        std::unique_ptr<MeshSurface> surface;
-        if (faces_in_range(*obstacle.faces, x.rows()))
-            surface = std::make_unique<MeshSurface>(obstacle.faces, x, settings.radius,
-                                                    obstacle.limbs.get());
-        meshes.push_back(
-            {obstacle.faces, obstacle.limbs, occurrence, queries, std::move(surface), {}});
+        meshes.push_back({obstacle.faces, obstacle.limbs, occurrence, queries, {}});
         return meshes.back();
     }
 
-    void add_target(int index, const Obstacle& obstacle, StepEnd end, size_t count) {
+    void add_target(int index, const Obstacle& obstacle, ObstacleTrees& trees, StepEnd end,
+                    size_t count) {
         Target target{index, &obstacle, nullptr, nullptr, Pose::Identity()};
         if (obstacle.shape != ObstacleShape::mesh) {
             if (!is_usable_primitive(obstacle)) return;
             target.to_local = (end == StepEnd::start ? obstacle.pose0 : obstacle.pose1).inverse();
         } else {
-            const Points& x = end == StepEnd::start ? obstacle.x0 : obstacle.x1;
-            if (!obstacle.faces || obstacle.x0.rows() != obstacle.x1.rows()) return;
-            CachedMesh& mesh = cached(obstacle, x);
+            target.surface = trees.surface(obstacle, end);
+            if (!target.surface) return;
+            KnownMesh& mesh = known(obstacle);
             mesh.last_seen = queries;
-            if (!mesh.surface || mesh.surface->vertex_count() != x.rows()) return;
-            mesh.surface->refit(x);
-            target.surface = mesh.surface.get();
             target.hints = hints_for(mesh, count);
         }
-        targets.push_back(target);
+        targets.push_back(std::move(target));
     }
 
     void prepare(const Boundary& boundary, StepEnd end, size_t count) {
         ++queries;
+        own.begin_step();
         targets.clear();
         for (size_t i = 0; i < boundary.obstacles.size(); ++i)
-            add_target(static_cast<int>(i), boundary.obstacles[i], end, count);
+            add_target(static_cast<int>(i), boundary.obstacles[i], trees_for(boundary), end, count);
         meshes.erase(std::remove_if(meshes.begin(), meshes.end(),
-                                    [&](const CachedMesh& mesh) {
+                                    [&](const KnownMesh& mesh) {
                                         return queries - mesh.last_seen > forget_after;
                                     }),
                      meshes.end());
@@ -228,11 +236,11 @@ struct Proximity::Impl {
     }
 };
 
-Proximity::Proximity(ProximitySettings settings) : m_impl(std::make_unique<Impl>()) {
+Proximity::Proximity(ProximitySettings settings, std::shared_ptr<ObstacleTrees> trees) {
     if (!(settings.radius > 0.0) || !std::isfinite(settings.radius))
         throw ArgumentError("ProximitySettings::radius", "it is not positive and finite",
                             "give a length of 0.01 to 0.5 m");
-    m_impl->settings = settings;
+    m_impl = std::make_unique<Impl>(settings, std::move(trees));
 }
 
 Proximity::~Proximity() = default;

@@ -9,8 +9,6 @@
 
 namespace cloth {
 
-enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
-
 /// Contact of a point within a garment's face, or on its edge, with an obstacle: the tangent plane
 /// of the surface point that was closest at t, at t + dt. See RidgeFinder.
 struct RidgeContact {
@@ -67,10 +65,11 @@ struct Cover {
 ///     proximity.query(state.x, boundary, contacts);
 ///     if (contacts.has(i) && contacts.distance[i] < 0) { ... vertex i is inside ... }
 ///
-/// The hierarchy of a mesh is built when its `faces` pointer is first seen and refitted afterwards;
-/// the closest face of the previous query of the same vertex bounds the next one. A mesh that no
-/// query has shown for a while is forgotten. Results depend on the arguments alone: not on earlier
-/// queries, nor on the number of threads.
+/// The hierarchies are those of Boundary::trees, which all garments of a world share, else its own:
+/// built when the `faces` pointer of a mesh is first seen, and refitted afterwards. The closest
+/// face of the previous query of the same vertex bounds the next one. A mesh that no query has
+/// shown for a while is forgotten. Results depend on the arguments alone: not on earlier queries,
+/// nor on whose hierarchies they are, nor on the number of threads.
 ///
 /// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
 /// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points
@@ -78,7 +77,10 @@ struct Cover {
 /// are passed over, since nothing on the per-frame path throws.
 class Proximity {
  public:
-    explicit Proximity(ProximitySettings settings = {});
+    /// @param trees  used where Boundary::trees is null; whoever gives it calls its begin_step().
+    ///               Null, or made for smaller radii: the object's own
+    explicit Proximity(ProximitySettings settings = {},
+                       std::shared_ptr<ObstacleTrees> trees = nullptr);
     ~Proximity();
     Proximity(Proximity&&) noexcept;
     Proximity& operator=(Proximity&&) noexcept;
@@ -106,7 +108,7 @@ class Proximity {
     Cover cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                 LimbSet ignored = 0);
 
-    /// Mesh hierarchies that are kept at present.
+    /// Meshes that are remembered at present.
     int cached_meshes() const;
 
  private:

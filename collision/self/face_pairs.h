@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/ccd/motion_tree.h"
+#include "collision/geometry/motion_tree.h"
 #include "data/core/types.h"
 
 namespace cloth {

@@ -17,6 +17,8 @@ constexpr int max_limbs = 32;
 
 enum class ObstacleShape { mesh, sphere, capsule, box, plane };
 
+enum class StepEnd { start, end };  ///< surfaces at t, or at t + dt
+
 /// One solid surface that cloth must stay outside of, at the start (t) and end (t + dt) of a step.
 ///
 /// A mesh keeps its `faces` for life (the query structure is cached by that pointer) and moves its
@@ -50,6 +52,8 @@ inline bool has_limbs(const Obstacle& mesh) {
     return mesh.limbs && mesh.faces && are_limbs_of(*mesh.faces, *mesh.limbs);
 }
 
+class ObstacleTrees;  // collision/proximity/obstacle_trees.h
+
 /// All that a stepper knows of the outside for one step.
 struct Boundary {
     std::vector<Obstacle> obstacles;
@@ -58,6 +62,10 @@ struct Boundary {
     Points accelerations;                ///< |V| x 3 (m/s^2) such as wind, or empty
     std::vector<LimbSet> ignored_limbs;  ///< |V|: limbs that a vertex does not touch, or empty;
                                          ///< LimbOverlap fills it
+    /// Hierarchies of the mesh obstacles that all garments of a world share; null: whoever queries
+    /// obstacles has its own. Results are the same. Leave it null for poses that only one garment
+    /// meets, such as those of sub-steps: they would crowd out those of the world.
+    std::shared_ptr<ObstacleTrees> trees;
 };
 
 /// The limbs that a vertex does not touch.

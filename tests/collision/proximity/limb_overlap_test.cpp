@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
 #include "tests/collision/test_meshes.h"
 
@@ -101,6 +102,27 @@ TEST(LimbOverlap, AllClothIgnoresABuriedLimbUntilItIsClear) {
     limbs.filter(body.boundary(0.205, 0.24), dt, state);
     EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.24, 0.24), dt, state), arm), 0);
     EXPECT_EQ(limbs.ignored(), std::vector<LimbSet>(size_t(state.x.rows()), 0));
+}
+
+TEST(LimbOverlap, TwoGarmentsShareOneFitOfEachPose) {
+    const TwoLimbs body(false);
+    const auto trees = std::make_shared<ObstacleTrees>();
+    LimbOverlap shirt, skirt, alone;
+    const ClothState state = shell();
+    const std::vector<double> way = {0.3, 0.24, 0.17, 0.16, 0.205, 0.25, 0.26};
+    int ignored = 0;
+    for (size_t step = 0; step + 1 < way.size(); ++step) {
+        Boundary boundary = body.boundary(way[step], way[step + 1]);
+        ignored += ignoring(alone.filter(boundary, dt, state), arm) > 0;
+        boundary.trees = trees;
+        trees->begin_step();
+        EXPECT_EQ(shirt.filter(boundary, dt, state).trees, trees);
+        EXPECT_EQ(skirt.filter(boundary, dt, state).trees, trees);
+        EXPECT_EQ(shirt.ignored(), alone.ignored());
+        EXPECT_EQ(skirt.ignored(), alone.ignored());
+        EXPECT_EQ(trees->counts().surface_fits, static_cast<long>(step) + 2);
+    }
+    EXPECT_GT(ignored, 2);
 }
 
 TEST(LimbOverlap, AJoinedLimbIsIgnoredOnlyWhereItFoldsIn) {

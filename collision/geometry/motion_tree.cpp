@@ -1,4 +1,4 @@
-#include "collision/ccd/motion_tree.h"
+#include "collision/geometry/motion_tree.h"
 
 #include <algorithm>
 #include <cmath>

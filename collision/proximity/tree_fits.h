@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace cloth {
+
+/// Copies of one tree, each fitted to a state of its own (a pose, or a motion between two). What
+/// was handed out stays as it is while it is held; what nobody holds is fitted anew, so that a step
+/// allocates nothing. One thread at a time may call it; holders let go in any thread.
+template <class Tree>
+class TreeFits {
+ public:
+    using Held = std::shared_ptr<const Tree>;
+
+    /// The fit for which matches(tree) is true; null: there is none.
+    template <class Matches>
+    Held find(long step, const Matches& matches) {
+        for (auto fit = m_fits.begin(); fit != m_fits.end(); ++fit) {
+            if (!matches(*fit->tree)) continue;
+            fit->last_step = step;
+            std::rotate(fit, fit + 1, m_fits.end());
+            return m_fits.back().tree;
+        }
+        return nullptr;
+    }
+
+    /// A tree to be fitted and added; null: there is none yet, build it.
+    std::unique_ptr<Tree> take(long step) {
+        while (m_fits.size() > 1 &&
+               (m_fits.front().last_step < step - 1 || m_fits.size() >= most_fits))
+            m_fits.erase(m_fits.begin());
+        if (std::unique_ptr<Tree> spare = m_spares->take()) return spare;
+        return m_fits.empty() ? nullptr : std::make_unique<Tree>(*m_fits.back().tree);
+    }
+
+    Held add(long step, std::unique_ptr<Tree> tree) {
+        const auto give_back = [spares = m_spares](Tree* done) {
+            spares->put(std::unique_ptr<Tree>(done));
+        };
+        m_fits.push_back({std::shared_ptr<Tree>(tree.release(), give_back), step});
+        return m_fits.back().tree;
+    }
+
+ private:
+    static constexpr size_t most_fits = 16, most_spares = 2;
+
+    struct Fit {
+        Held tree;
+        long last_step;
+    };
+
+    /// Trees that nobody holds.
+    class Spares {
+     public:
+        Spares() { m_trees.reserve(most_spares); }  // put() must not throw
+        std::unique_ptr<Tree> take() {
+            const std::lock_guard<std::mutex> lock(m_mutex);
+            if (m_trees.empty()) return nullptr;
+            std::unique_ptr<Tree> tree = std::move(m_trees.back());
+            m_trees.pop_back();
+            return tree;
+        }
+        void put(std::unique_ptr<Tree> tree) {
+            const std::lock_guard<std::mutex> lock(m_mutex);
+            if (m_trees.size() < most_spares) m_trees.push_back(std::move(tree));
+        }
+
+     private:
+        std::mutex m_mutex;
+        std::vector<std::unique_ptr<Tree>> m_trees;
+    };
+
+    std::vector<Fit> m_fits;  ///< the one that was used last comes last
+    std::shared_ptr<Spares> m_spares = std::make_shared<Spares>();
+};
+
+}  // namespace cloth
