@@ -264,6 +264,7 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
     if (result.steps > 0) {
         const cloth::StepReport& report = entry.step->lastReport();
         m_status.maxPenetration = std::max(m_status.maxPenetration, report.max_penetration);
+        m_status.cutSteps += report.substeps > 1;
         m_status.times.proximity += report.times.proximity;
         m_status.times.features += report.times.features;
         m_status.times.solve += report.times.solve;

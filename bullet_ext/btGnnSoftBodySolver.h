@@ -49,6 +49,7 @@ struct btGnnSolverStatus {
                                   ///< of their nodes are not finite
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
+    long cutSteps = 0;            ///< those that were taken in parts, see cloth::ClothStepper
     double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m)
     cloth::StageTimes times;      ///< of the last world step, all cloth together
     std::vector<btGnnSolverMessage> messages;
@@ -58,7 +59,7 @@ struct btGnnSolverStatus {
 /// to the world in place of Bullet's own solver:
 ///
 ///     btGnnSoftBodySolver solver([](const cloth::Garment& garment) {
-///         return std::make_unique<cloth::QuasiNewtonStepper>(garment);
+///         return cloth::make_cloth(garment);  // gnn/model/make_cloth.h
 ///     });
 ///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
 ///     world.addSoftBody(cloth);

@@ -196,7 +196,6 @@ BulletClothStepper::~BulletClothStepper() = default;
 
 StepReport BulletClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     StepReport report;
-    report.residual = std::numeric_limits<double>::quiet_NaN();
     report.finite = isUsable(m_garment, boundary, dt, state);
     if (!report.finite) return report;
     const auto start = std::chrono::steady_clock::now();

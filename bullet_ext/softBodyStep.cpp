@@ -217,6 +217,8 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
     m_cloth_step.begin = goes_on ? m_cloth_step.begin + m_cloth_step.length : 0.0;
     const double fixed = m_stepper->fixed_dt();
     m_cloth_step.length = fixed > 0.0 ? fixed : m_h - m_cloth_step.begin;
+    if (!m_prepared) m_stepper->prepare(m_cloth_step.length);
+    m_prepared = true;
     m_cloth_step.valid = true;
     const Points pins_now = pinsAt(m_cloth_step.begin);
     const std::vector<int>& pins = m_garment->pins();

@@ -77,6 +77,7 @@ class SoftBodyStep {
     ClothSleep m_sleep;
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
+    bool m_prepared = false;    ///< the stepper knows how long its steps are
     StepSpan m_cloth_step;
     ClothState m_shown;    ///< what the nodes say, in doubles
     Points m_impulse;      ///< |V| x 3 (N s): forces of the world steps since the last cloth step

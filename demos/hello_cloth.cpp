@@ -8,14 +8,15 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "data/core/paths.h"
-#include "gnn/model/learned_cloth.h"
+#include "gnn/model/make_cloth.h"
 
 int main() {
     // The network, and how to make a stepper for a piece of cloth.
-    auto weights = std::make_shared<const cloth::EngineWeights>(
+    cloth::ClothSettings settings;
+    settings.weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
     btGnnSoftBodySolver solver(
-        [&](const cloth::Garment& garment) { return cloth::make_learned_cloth(garment, weights); });
+        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
 
     // A Bullet world as always, but for its last argument.
     btSoftBodyRigidBodyCollisionConfiguration config;

@@ -16,7 +16,7 @@
 #include "data/body/animated_body.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
-#include "gnn/model/learned_cloth.h"
+#include "gnn/model/make_cloth.h"
 
 int main(int argc, char** argv) try {
     const std::string motion = argc > 1 ? argv[1] : "01_01";
@@ -26,10 +26,11 @@ int main(int argc, char** argv) try {
         cloth::load_motion_by_name(motion));
     const cloth::Garment shirt("tshirt", cloth::load_mesh(cloth::asset_path("garments/tshirt.obj")),
                                cloth::Fabric::soft_cotton());
-    const auto weights = std::make_shared<const cloth::EngineWeights>(
+    cloth::ClothSettings settings;
+    settings.weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
     btGnnSoftBodySolver solver(
-        [&](const cloth::Garment& garment) { return cloth::make_learned_cloth(garment, weights); });
+        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
 
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
@@ -65,8 +66,8 @@ int main(int argc, char** argv) try {
         lead_in + frames, ms / (lead_in + frames), low.y(), high.y(), 1e3 * deepest);
     for (const btGnnSolverMessage& message : solver.status().messages)
         std::printf("%s\n", message.text.c_str());
-    const auto& stepper = dynamic_cast<const cloth::GuardedStepper&>(*solver.stepperOf(cloth));
-    std::printf("%ld steps were cut into sub-steps\n", stepper.guarded_steps());
+    std::printf("%ld of %ld steps were cut into parts\n", solver.status().cutSteps,
+                solver.status().steps);
     const bool worn = solver.status().failedSteps == 0 && low.y() > 0.6f && high.y() < 2.2f;
     world.removeSoftBody(cloth);
     delete cloth;

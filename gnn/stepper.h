@@ -1,7 +1,8 @@
 #pragma once
 
-#include <limits>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "data/core/boundary.h"
 #include "data/core/cloth_state.h"
@@ -12,38 +13,48 @@ namespace cloth {
 struct StageTimes {
     double proximity = 0.0;  ///< nearest points on the obstacles
     double features = 0.0;   ///< building the network's input
-    double solve = 0.0;      ///< network evaluation or solver iterations
-    double contact = 0.0;    ///< projection and resolution of contacts
+    double solve = 0.0;      ///< network evaluation and solver iterations
+    double contact = 0.0;    ///< contact projection, and the search for tunnelling
     double total() const { return proximity + features + solve + contact; }
 };
 
 /// What happened inside one step; the per-frame path reports, it does not throw.
 struct StepReport {
-    int iterations = 0;  ///< solver or refinement iterations spent
-    double residual =
-        0.0;  ///< |gradient| of the incremental potential after the step, over
-              ///< the norm of gravity's and inertia's forces at x_t; NaN: not computed
+    bool finite = true;   ///< false: the state was left as it was before the step
+    int iterations = 0;   ///< solver iterations spent
+    int substeps = 1;     ///< equal parts in which the step was taken
+    /// |gradient| of the incremental potential after the step, over the norm of gravity's and
+    /// inertia's forces at x_t; none: not computed.
+    std::optional<double> residual;
     /// What the last five quasi-Newton iterations gained, as a distance (m), see MinimiseReport;
-    /// +inf: there were fewer.
-    double gain = std::numeric_limits<double>::infinity();
-    bool converged = false;        ///< the stepper's own tolerance was met
+    /// none: there were fewer.
+    std::optional<double> gain;
+    bool converged = false;  ///< the stepper's own tolerance was met
+    bool prediction_rejected = false;  ///< the network's answer was not finite, or of higher energy
+                                       ///< than the guess, which the step started from instead
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
-    double max_entry = 0.0;  ///< deepest vertex before contact projection pushed it out (m): a
+    double max_entry = 0.0;  ///< deepest vertex before contact projection moved it out (m): a
                              ///< contact that the step did not foresee
     /// How thick the thinnest obstacle is that the garment went through on the way (m), see
-    /// TunnellingDetector; +inf: none was found. Looked for by WatchedStepper.
-    double tunnelled = std::numeric_limits<double>::infinity();
-    bool finite = true;  ///< false: the state was left as it was before the step
+    /// TunnellingDetector; none: nothing was found, or it was not searched for.
+    std::optional<double> tunnelled;
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only
     Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)
     StageTimes times;
+
+    /// The report of a step that could not be made.
+    static StepReport failed() {
+        StepReport report;
+        report.finite = false;
+        return report;
+    }
 };
 
 /// Advances one garment by one time step. Every solver, physical or learned, is a Stepper.
 ///
-///     QuasiNewtonStepper stepper(garment, {});
+///     ClothStepper stepper(garment);
 ///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
 ///
 /// Contract (tests/gnn/stepper_contract_test.cpp): pins land on their targets, equal inputs give
@@ -57,17 +68,27 @@ class Stepper {
     /// Time step this stepper is made for (s); 0 if it accepts any.
     virtual double fixed_dt() const { return 0.0; }
 
+    /// Builds ahead of time what steps of this length (s) need, such as factorisations. Without it
+    /// the first such step builds them.
+    virtual void prepare(double dt) { (void)dt; }
+
     /// @param boundary  obstacle surfaces at t and t+dt, pin targets at t+dt, gravity (m/s^2)
     /// @param dt        time step (s)
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
 
-    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
-    /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
+    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3, N);
+    /// they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know
     virtual bool internal_forces(const Points& x, Points& forces) const {
         (void)x, (void)forces;
         return false;
+    }
+
+    /// Limbs that each vertex ignored in the last step (|V|), see LimbOverlap; empty: none did.
+    virtual const std::vector<LimbSet>& ignored_limbs() const {
+        static const std::vector<LimbSet> none;
+        return none;
     }
 };
 

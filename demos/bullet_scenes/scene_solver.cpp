@@ -2,36 +2,30 @@
 
 #include "demos/compare/arguments.h"
 #include "demos/compare/solver_factory.h"
-#include "gnn/model/learned_cloth.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/model/make_cloth.h"
 
 namespace cloth {
 
 namespace {
 
 StepperFactory quasi_newton(int iterations) {
-    return [iterations](const Garment& garment) -> std::unique_ptr<Stepper> {
-        QuasiNewtonSettings settings;
-        settings.iterations = iterations;
-        GuardSettings guard;
-        guard.solver.iterations = iterations;
-        return std::make_unique<GuardedStepper>(
-            garment, std::make_unique<QuasiNewtonStepper>(garment, settings), guard);
-    };
+    ClothSettings settings;
+    settings.step.quasi_newton = IterationLimits::exactly(iterations);
+    settings.guard.iterations.iterations = iterations;
+    return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
 
 StepperFactory network(const std::string& name, const std::string& folder) {
     const NetworkName wanted(name);
     if (wanted.torch) throw UsageError("solver " + name + ": here networks run in the engine only");
-    LearnedClothSettings settings;
+    ClothSettings settings;
     if (!wanted.as_shipped)
-        settings.step.refine = whole_number("solver " + name, wanted.refine, 0, 100);
-    const auto weights = std::make_shared<const EngineWeights>(
+        settings.step.quasi_newton =
+            IterationLimits::exactly(whole_number("solver " + name, wanted.refine, 0, 100));
+    settings.weights = std::make_shared<const EngineWeights>(
         Weights::load(weights_file(wanted.variant, folder)),
         wanted.bfloat16 ? Precision::bfloat16 : Precision::float32);
-    return [weights, settings](const Garment& garment) {
-        return make_learned_cloth(garment, weights, settings);
-    };
+    return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
 
 }  // namespace

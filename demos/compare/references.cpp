@@ -1,19 +1,15 @@
 #include "demos/compare/references.h"
 
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 namespace cloth {
 
-static QuasiNewtonSettings many_iterations(int iterations, double tolerance) {
-    QuasiNewtonSettings settings;
-    settings.iterations = iterations;
-    settings.tolerance = tolerance;
-    return settings;
+static ClothStepperSettings many_iterations(int iterations, double tolerance) {
+    return ClothStepperSettings::plain(IterationLimits::until(tolerance, iterations));
 }
 
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress) {
-    QuasiNewtonStepper stepper(scene.garment(), many_iterations(60, 1e-3));
+    ClothStepper stepper(scene.garment(), many_iterations(60, 1e-3));
     ClothState state = ClothState::at_rest(scene.garment());
     const double dt = ComparisonScene::frame_time;
     const int steps = scene.lead_in_frames();
@@ -42,14 +38,14 @@ static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int sub
 
 Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                             const ProgressFunction& progress) {
-    NewtonStepper stepper(scene.garment());
+    ClothStepper stepper(scene.garment(), ClothStepperSettings::reference());
     return extend(scene, stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
 }
 
 Trajectory fine_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                           const ProgressFunction& progress) {
     // At 1/240 s inertia rules the potential and the quasi-Newton matrix is nearly its Hessian.
-    QuasiNewtonStepper stepper(scene.garment(), many_iterations(100, 1e-4));
+    ClothStepper stepper(scene.garment(), many_iterations(100, 1e-4));
     return extend(scene, stepper, 8, std::move(begun), frames, "reference, 1/240 s", progress);
 }
 

@@ -57,7 +57,8 @@ void RolloutMeter::record_times(const StepReport& report, double ms) {
     m_rollout.features.push_back(report.times.features);
     m_rollout.solve.push_back(report.times.solve);
     m_rollout.contact.push_back(report.times.contact);
-    m_rollout.residual.push_back(report.residual);
+    m_rollout.residual.push_back(
+        report.residual.value_or(std::numeric_limits<double>::quiet_NaN()));
 }
 
 void RolloutMeter::record_errors(size_t frame) {

@@ -8,11 +8,7 @@
 #include "data/core/paths.h"
 #include "demos/compare/arguments.h"
 #include "gnn/model/engine.h"
-#include "gnn/model/learned_stepper.h"
-#include "gnn/physics/stepper/guarded_stepper.h"
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
-#include "gnn/physics/stepper/substepped_stepper.h"
+#include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 
 namespace cloth {
@@ -69,39 +65,61 @@ Integrator take_integrator(std::string& name) {
     return Integrator::bdf2;
 }
 
+/// What all solvers of a potential have: the integrator that the name ends with, which is taken off,
+/// and what the scene says of limbs and self-contact.
+void set_scene(std::string& name, const ComparisonScene& scene, ClothStepperSettings& settings) {
+    settings.step.potential.integrator = take_integrator(name);
+    settings.step.potential.self_contact = scene.self_contact();
+    settings.guard.limbs = scene.has_limbs();
+}
+
 std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& scene) {
-    NewtonStepperSettings settings;
-    settings.potential.integrator = take_integrator(name);
-    settings.potential.self_contact = scene.self_contact();
-    if (name != "reference") settings.max_iterations = iterations_of(name, "newton-", 0, 1000);
-    return std::make_unique<NewtonStepper>(scene.garment(), settings);
+    ClothStepperSettings settings = ClothStepperSettings::reference();
+    set_scene(name, scene, settings);
+    if (name != "reference")
+        settings.step.newton.max_iterations = iterations_of(name, "newton-", 0, 1000);
+    return std::make_unique<ClothStepper>(scene.garment(), settings);
 }
 
 std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {
-    const Integrator integrator = take_integrator(name);
-    if (name == "quasi-newton") {
-        QuasiNewtonSettings controlled = QuasiNewtonSettings::controlled();
-        controlled.potential.integrator = integrator;
-        controlled.potential.self_contact = scene.self_contact();
-        return make_physics_cloth(scene.garment(), controlled);
+    ClothStepperSettings settings;
+    set_scene(name, scene, settings);
+    if (name != "quasi-newton") {
+        const size_t cross = name.find('x');
+        const std::string first = name.substr(0, cross);
+        settings.step.quasi_newton =
+            IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000));
+        settings.guard.max_substeps = 1;
+        if (cross != std::string::npos) settings.substeps = iterations_of(name, first + "x", 1, 64);
     }
-    const size_t cross = name.find('x');
-    const std::string first = name.substr(0, cross);
-    QuasiNewtonSettings settings;
-    settings.iterations = iterations_of(first, "quasi-newton-", 0, 1000);
-    settings.potential.integrator = integrator;
-    settings.potential.self_contact = scene.self_contact();
-    auto stepper = std::make_unique<QuasiNewtonStepper>(scene.garment(), settings);
-    if (cross == std::string::npos) return stepper;
-    return std::make_unique<SubsteppedStepper>(scene.garment(), std::move(stepper),
-                                               iterations_of(name, first + "x", 1, 64));
+    return std::make_unique<ClothStepper>(scene.garment(), settings);
 }
+
+/// A stepper that knows of no limbs, told which ones to pass over.
+class WithLimbs : public Stepper {
+ public:
+    explicit WithLimbs(std::unique_ptr<Stepper> inner) : m_inner(std::move(inner)) {}
+    std::string name() const override { return m_inner->name(); }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
+        return m_inner->step(m_limbs.filter(boundary, dt, state), dt, state);
+    }
+    bool internal_forces(const Points& x, Points& forces) const override {
+        return m_inner->internal_forces(x, forces);
+    }
+    const std::vector<LimbSet>& ignored_limbs() const override { return m_limbs.ignored(); }
+
+ private:
+    std::unique_ptr<Stepper> m_inner;
+    LimbOverlap m_limbs;
+};
 
 std::unique_ptr<Stepper> make_xpbd(const std::string& name, const ComparisonScene& scene) {
     XpbdSettings settings;
     settings.substeps = iterations_of(name, "xpbd-", 1, 1000);
     settings.self_contact = scene.self_contact();
-    return std::make_unique<XpbdStepper>(scene.garment(), settings);
+    auto stepper = std::make_unique<XpbdStepper>(scene.garment(), settings);
+    if (!scene.has_limbs()) return stepper;
+    return std::make_unique<WithLimbs>(std::move(stepper));
 }
 
 std::string weights_folder(const std::string& folder) {
@@ -118,23 +136,18 @@ std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weig
 
 std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
-    const Integrator integrator = take_integrator(name);
+    ClothStepperSettings learned;
+    set_scene(name, scene, learned);
     const NetworkName network(name);
-    LearnedStepperSettings learned;
-    learned.potential.integrator = integrator;
-    learned.potential.self_contact = scene.self_contact();
-    if (!network.as_shipped)
-        learned.refine =
-            iterations_of(network.variant + "+" + network.refine, network.variant + "+", 0, 100);
+    if (!network.as_shipped) {  // NAME+K: exactly that in every frame
+        learned.step.quasi_newton = IterationLimits::exactly(
+            iterations_of(network.variant + "+" + network.refine, network.variant + "+", 0, 100));
+        learned.guard.max_substeps = 1;
+    }
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
-    auto stepper = std::make_unique<LearnedStepper>(
-        scene.garment(), make_predictor(network, weights, settings), learned);
-    if (!network.as_shipped) return stepper;  // NAME+K: exactly that in every frame
-    GuardSettings guard;
-    guard.solver.potential = learned.potential;
-    return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), guard);
+    return make_cloth(scene.garment(), make_predictor(network, weights, settings), learned);
 }
 
 std::unique_ptr<Stepper> make_own_solver(const std::string& name, const ComparisonScene& scene,
@@ -182,11 +195,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
                                                     scene.segments());
-    std::unique_ptr<Stepper> stepper = make_own_solver(name, scene, settings);
-    if (!scene.has_limbs() || dynamic_cast<GuardedStepper*>(stepper.get())) return stepper;
-    GuardSettings limbs_alone;
-    limbs_alone.max_substeps = 1;
-    return std::make_unique<GuardedStepper>(scene.garment(), std::move(stepper), limbs_alone);
+    return make_own_solver(name, scene, settings);
 }
 
 }  // namespace cloth

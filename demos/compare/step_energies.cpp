@@ -21,10 +21,8 @@ void StepEnergies::begin(const ClothState& state, const Boundary& boundary, doub
 }
 
 double StepEnergies::minimum_from(Points x) const {
-    QuasiNewtonSettings settings;
-    settings.iterations = 300;
-    settings.tolerance = 1e-4;
-    return QuasiNewton(m_potential.garment(), settings).minimise(m_potential, x).energy;
+    const IterationLimits limits = IterationLimits::until(1e-4, 300);
+    return QuasiNewton(m_potential.garment(), limits).minimise(m_potential, x).energy;
 }
 
 // A step whose guess is already the minimum has nothing to gain: avoid 0/0.

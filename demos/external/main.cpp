@@ -10,13 +10,14 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "data/core/paths.h"
-#include "gnn/model/learned_cloth.h"
+#include "gnn/model/make_cloth.h"
 
 int main() {
     const std::string file = cloth::asset_path("weights/small.safetensors");
-    auto weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
+    cloth::ClothSettings settings;
+    settings.weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
     btGnnSoftBodySolver solver(
-        [&](const cloth::Garment& garment) { return cloth::make_learned_cloth(garment, weights); });
+        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
     btDbvtBroadphase broadphase;

@@ -7,7 +7,6 @@
 
 #include "collision/proximity/metrics.h"
 #include "collision/self/self_tangles.h"
-#include "gnn/physics/stepper/guarded_stepper.h"
 
 namespace cloth {
 namespace {
@@ -79,8 +78,7 @@ class HardMeter {
         Boundary outside = m_scene.boundary_of_frame(frame);
         const Garment& garment = m_scene.garment();
         const Points motion = m_state.x - before;
-        if (const auto* guarded = dynamic_cast<const GuardedStepper*>(&m_stepper))
-            outside.ignored_limbs = guarded->ignored_limbs();
+        outside.ignored_limbs = m_stepper.ignored_limbs();
         m_run.penetration_mm.push_back(1e3 * deepest_free_vertex(outside));
         outside.ignored_limbs.clear();
         m_run.surface_mm.push_back(

@@ -58,15 +58,17 @@ FeatureBuilder::FeatureBuilder(const Garment& garment, const ClothGraph& graph,
       m_material(scaled_material(garment.fabric())) {
 }
 
-void FeatureBuilder::build(const ClothState& state, const Boundary& boundary,
+bool FeatureBuilder::build(const ClothState& state, const Boundary& boundary,
                            const IncrementalPotential& potential, const Points& base,
-                           Features& features) {
+                           Features& features, PotentialValue* at_base) {
     features.base = base;
     features.scale = output_scale(potential.dt());
     build_nodes(state, boundary, potential, features);
-    if (m_settings.force_features) build_forces(state, potential, features);
+    if (m_settings.force_features)
+        build_forces(state, potential, features, at_base ? *at_base : m_at_base);
     build_edges(state, features);
     build_world(state, boundary, potential, features);
+    return m_settings.force_features;
 }
 
 void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& boundary,
@@ -75,6 +77,7 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
     const Eigen::Index count = state.x.rows();
     features.node.resize(count, feature_count(node_layout(m_settings.force_features)));
     area_weighted_normals(state.x, m_garment->rest().faces, m_normals);
+    const bool any_contacts = !potential.contacts().obstacle.empty();
     for (Eigen::Index i = 0; i < count; ++i) {
         const bool pinned = m_garment->is_pinned()[static_cast<size_t>(i)];
         const Vec3 x = state.x.row(i), base = features.base.row(i);
@@ -89,33 +92,34 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
         put(features.node, i, 12, std::log(m_garment->masses()[i]));
         put(features.node, i, 13, pinned ? 1.0 : 0.0);
         put(features.node, i, 14, m_material);
-        const bool near = potential.contacts().has(i) &&
+        const bool near = any_contacts && potential.contacts().has(i) &&
                           potential.contacts().distance[i] < m_settings.world_radius;
         put(features.node, i, 17, near ? 1.0 : 0.0);
     }
 }
 
 void FeatureBuilder::build_forces(const ClothState& state, const IncrementalPotential& potential,
-                                  Features& features) {
+                                  Features& features, PotentialValue& at_base) {
     const double dt = potential.dt(), per_metre = 1.0 / features.scale;
     const double stiffness = m_garment->fabric().longitudinal();
     const VectorX& masses = m_garment->masses();
-    const auto put_displacements = [&](int column) {
-        for (Eigen::Index i = 0; i < m_gradient.rows(); ++i)
+    const auto put_displacements = [&](int column, const Points& gradient) {
+        for (Eigen::Index i = 0; i < gradient.rows(); ++i)
             put(features.node, i, column,
-                squash(-dt * dt * per_metre / masses[i] * m_gradient.row(i).transpose()));
+                squash(-dt * dt * per_metre / masses[i] * gradient.row(i).transpose()));
     };
     potential.elastic_gradient(state.x, m_gradient);
-    put_displacements(18);
+    put_displacements(18, m_gradient);
     potential.elastic_gradient(features.base, m_gradient);
-    put_displacements(21);
-    potential.value_gradient(features.base, m_gradient);
-    put_displacements(24);
+    put_displacements(21, m_gradient);
+    at_base.energy = potential.value_gradient(features.base, at_base.gradient);
+    const Points& gradient = at_base.gradient;
+    put_displacements(24, gradient);
     // The step of one Jacobi iteration of the quasi-Newton matrix M/dt^2 + (2 mu + lambda) L.
-    for (Eigen::Index i = 0; i < m_gradient.rows(); ++i) {
+    for (Eigen::Index i = 0; i < gradient.rows(); ++i) {
         const double diagonal =
             masses[i] / (dt * dt) + stiffness * std::max(0.0, m_graph->laplacian_diagonal[i]);
-        put(features.node, i, 27, squash(-per_metre / diagonal * m_gradient.row(i).transpose()));
+        put(features.node, i, 27, squash(-per_metre / diagonal * gradient.row(i).transpose()));
     }
 }
 

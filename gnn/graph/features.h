@@ -43,14 +43,17 @@ class FeatureBuilder {
 
     /// @param potential  begun for this step, with the nearest points of state.x
     /// @param base       |V| x 3 (m): the guess, with pinned vertices at their targets
-    void build(const ClothState& state, const Boundary& boundary,
-               const IncrementalPotential& potential, const Points& base, Features& features);
+    /// @param at_base    if not null, filled with E and its gradient at the base where the features
+    ///                   need them; returns whether they do
+    bool build(const ClothState& state, const Boundary& boundary,
+               const IncrementalPotential& potential, const Points& base, Features& features,
+               PotentialValue* at_base = nullptr);
 
  private:
     void build_nodes(const ClothState& state, const Boundary& boundary,
                      const IncrementalPotential& potential, Features& features);
     void build_forces(const ClothState& state, const IncrementalPotential& potential,
-                      Features& features);
+                      Features& features, PotentialValue& at_base);
     void build_edges(const ClothState& state, Features& features) const;
     void build_world(const ClothState& state, const Boundary& boundary,
                      const IncrementalPotential& potential, Features& features) const;
@@ -60,6 +63,7 @@ class FeatureBuilder {
     FeatureSettings m_settings;
     Vec3 m_material;  ///< bending, mu, lambda scaled to [0, 1] over the training range
     Points m_normals, m_gradient;
+    PotentialValue m_at_base;
 };
 
 }  // namespace cloth

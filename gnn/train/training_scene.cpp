@@ -34,8 +34,7 @@ void TrainingScene::prepare(double contact_weight) {
 }
 
 double TrainingScene::refine(Points& x, int iterations) {
-    m_solver.set_iterations(iterations);
-    return m_solver.minimise(m_potential, x).energy;
+    return m_solver.minimise(m_potential, x, IterationLimits::exactly(iterations)).energy;
 }
 
 bool TrainingScene::is_sound(const Points& x) const {

@@ -21,7 +21,7 @@
 
 #include "data/core/paths.h"
 #include "gnn/model/engine.h"
-#include "gnn/model/learned_stepper.h"
+#include "gnn/model/make_cloth.h"
 #include "gnn/model/message_block.h"
 #include "tests/bench/network_scene.h"
 #include "tests/bench/peak.h"
@@ -171,11 +171,10 @@ void register_engine(const std::string& name, const std::function<Weights()>& lo
 
 /// One whole frame of the learned stepper by stage; refinement as shipped and none.
 void frame(benchmark::State& state, const ModelConfig& config, int refine) {
-    LearnedStepperSettings settings;
-    settings.refine = refine;
-    LearnedStepper stepper(moment().garment,
-                           std::make_shared<Engine>(random_weights(config), EngineSettings{2}),
-                           settings);
+    const auto made = make_cloth(
+        moment().garment, std::make_shared<Engine>(random_weights(config), EngineSettings{2}),
+        ClothStepperSettings::plain(IterationLimits::exactly(refine)));
+    Stepper& stepper = *made;
     StageTimes times;
     for (auto _ : state) {
         ClothState copy = moment().state;

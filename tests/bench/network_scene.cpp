@@ -8,7 +8,7 @@
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
 #include "gnn/physics/stepper/guess.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 namespace cloth::bench {
 namespace {
@@ -24,7 +24,7 @@ Obstacle filling_sphere() {
 }
 
 void hang(const Garment& garment, Boundary& boundary, ClothState& state) {
-    QuasiNewtonStepper stepper(garment, {});
+    ClothStepper stepper(garment, ClothStepperSettings::plain());
     std::unique_ptr<AnimatedBody> body;
     try {
         body = std::make_unique<AnimatedBody>(std::make_shared<const Body>(Body::load_default()),

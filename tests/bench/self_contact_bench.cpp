@@ -12,7 +12,7 @@
 
 #include "collision/self/self_crossings.h"
 #include "collision/self/self_tangles.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
 namespace cloth {
@@ -30,10 +30,11 @@ LayerScene draped_sheet(int vertices) {
     return {std::move(garment), std::move(start), test::outside({test::ball(0.15)})};
 }
 
-QuasiNewtonSettings solver(double layer_thickness) {
-    QuasiNewtonSettings settings;
-    settings.potential.self_contact.thickness = layer_thickness;
-    settings.potential.self_contact.threads = 1;
+ClothStepperSettings solver(double layer_thickness) {
+    ClothStepperSettings settings = ClothStepperSettings::plain();
+    settings.step.potential.self_contact.thickness = layer_thickness;
+    settings.step.potential.self_contact.threads = 1;
+    settings.step.proximity.threads = 1;
     return settings;
 }
 
@@ -43,7 +44,7 @@ struct Moment {
     ClothState state;
 
     explicit Moment(LayerScene made) : scene(std::move(made)), state(scene.start) {
-        QuasiNewtonStepper stepper(scene.garment, solver(thickness), {0.1, 1});
+        ClothStepper stepper(scene.garment, solver(thickness));
         for (int frame = 0; frame < frames_before; ++frame) stepper.step(scene.boundary, dt, state);
     }
 };
@@ -59,8 +60,7 @@ const Moment& moment(bool meets, int vertices) {
 
 void step(benchmark::State& state) {
     const Moment& now = moment(state.range(0) != 0, static_cast<int>(state.range(1)));
-    QuasiNewtonStepper stepper(now.scene.garment, solver(state.range(2) != 0 ? thickness : 0.0),
-                               {0.1, 1});
+    ClothStepper stepper(now.scene.garment, solver(state.range(2) != 0 ? thickness : 0.0));
     ClothState moving = now.state;
     stepper.step(now.scene.boundary, dt, moving);
     for (auto _ : state) {

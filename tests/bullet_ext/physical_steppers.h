@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 namespace cloth::test {
 
@@ -28,9 +28,8 @@ class Ticking : public Stepper {
 /// Quasi-Newton steps at the world's rate, or at a rate of their own if fixed_dt is not zero.
 inline StepperFactory quasi_newton(double fixed_dt = 0.0, int iterations = 15) {
     return [=](const Garment& garment) -> std::unique_ptr<Stepper> {
-        QuasiNewtonSettings settings;
-        settings.iterations = iterations;
-        auto stepper = std::make_unique<QuasiNewtonStepper>(garment, settings);
+        auto stepper = std::make_unique<ClothStepper>(
+            garment, ClothStepperSettings::plain(IterationLimits::exactly(iterations)));
         if (fixed_dt == 0.0) return stepper;
         return std::make_unique<Ticking>(std::move(stepper), fixed_dt);
     };

@@ -4,9 +4,7 @@
 #include <cstring>
 #include <exception>
 
-#include "gnn/model/learned_cloth.h"
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/model/random_weights.h"
 
@@ -14,9 +12,8 @@ namespace cloth::fuzz {
 namespace {
 
 std::unique_ptr<Stepper> quasi_newton(const Garment& garment) {
-    QuasiNewtonSettings settings;
-    settings.iterations = 3;
-    return std::make_unique<QuasiNewtonStepper>(garment, settings);
+    return std::make_unique<ClothStepper>(garment,
+                                          ClothStepperSettings::plain(IterationLimits::exactly(3)));
 }
 
 std::unique_ptr<Stepper> xpbd(const Garment& garment) {
@@ -26,18 +23,19 @@ std::unique_ptr<Stepper> xpbd(const Garment& garment) {
 }
 
 std::unique_ptr<Stepper> reference(const Garment& garment) {
-    NewtonStepperSettings settings;
-    settings.max_iterations = 2;
-    settings.contact_updates = 1;
-    return std::make_unique<NewtonStepper>(garment, settings);
+    ClothStepperSettings settings = ClothStepperSettings::reference();
+    settings.step.newton.max_iterations = 2;
+    settings.step.contact_updates = 1;
+    return std::make_unique<ClothStepper>(garment, settings);
 }
 
 std::unique_ptr<Stepper> guarded(const Garment& garment) {
-    GuardSettings settings;
-    settings.max_substeps = 4;
-    settings.solver.iterations = 2;
-    settings.solver.least_iterations = 0;
-    return std::make_unique<GuardedStepper>(garment, xpbd(garment), settings);
+    ClothStepperSettings settings;
+    settings.step.quasi_newton = IterationLimits::exactly(2);
+    settings.step.potential.integrator = Integrator::bdf2;
+    settings.guard.max_substeps = 4;
+    settings.guard.iterations = IterationLimits::exactly(2);
+    return std::make_unique<ClothStepper>(garment, settings);
 }
 
 std::shared_ptr<const EngineWeights> weights(const std::string& variant) {
@@ -49,17 +47,17 @@ std::shared_ptr<const EngineWeights> weights(const std::string& variant) {
 
 std::unique_ptr<Stepper> network_alone(const Garment& garment) {
     static const auto baseline = weights("baseline");
-    LearnedStepperSettings settings;
-    settings.refine = Refinement::off();
-    return std::make_unique<LearnedStepper>(garment, std::make_shared<Engine>(baseline), settings);
+    return make_cloth(garment, std::make_shared<Engine>(baseline),
+                      ClothStepperSettings::plain(IterationLimits::none()));
 }
 
 std::unique_ptr<Stepper> learned(const Garment& garment) {
     static const auto fast = weights("fast");
-    LearnedClothSettings settings;
-    settings.step.refine = 3;
+    ClothSettings settings;
+    settings.weights = fast;
+    settings.step.quasi_newton = IterationLimits::exactly(3);
     settings.guard.max_substeps = 2;
-    return make_learned_cloth(garment, fast, settings);
+    return make_cloth(garment, settings);
 }
 
 bool same_bits(const Points& a, const Points& b) {

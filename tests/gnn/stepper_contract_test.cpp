@@ -1,27 +1,24 @@
 #include "tests/gnn/stepper_contract.h"
 
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
-#include "gnn/physics/stepper/substepped_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 namespace cloth::test {
 namespace {
 
 StepperCase quasi_newton(int iterations) {
     const auto make = [iterations](const Garment& garment) {
-        QuasiNewtonSettings settings;
-        settings.iterations = iterations;
-        return std::make_unique<QuasiNewtonStepper>(garment, settings);
+        return std::make_unique<ClothStepper>(
+            garment, ClothStepperSettings::plain(IterationLimits::exactly(iterations)));
     };
     return {"QuasiNewton" + std::to_string(iterations), make, 1e-6, {}};
 }
 
 StepperCase bdf2() {
     const auto make = [](const Garment& garment) {
-        QuasiNewtonSettings settings;
-        settings.potential.integrator = Integrator::bdf2;
-        return std::make_unique<QuasiNewtonStepper>(garment, settings);
+        ClothStepperSettings settings = ClothStepperSettings::plain();
+        settings.step.potential.integrator = Integrator::bdf2;
+        return std::make_unique<ClothStepper>(garment, settings);
     };
     return {"Bdf2",
             make,
@@ -31,7 +28,7 @@ StepperCase bdf2() {
 
 StepperCase reference() {
     const auto make = [](const Garment& garment) {
-        return std::make_unique<NewtonStepper>(garment);
+        return std::make_unique<ClothStepper>(garment, ClothStepperSettings::reference());
     };
     return {"Reference", make, 1e-5, {}};
 }
@@ -50,10 +47,9 @@ StepperCase xpbd(int substeps) {
 
 StepperCase substepped(int substeps) {
     const auto make = [substeps](const Garment& garment) {
-        QuasiNewtonSettings settings;
-        settings.iterations = 5;
-        return std::make_unique<SubsteppedStepper>(
-            garment, std::make_unique<QuasiNewtonStepper>(garment, settings), substeps);
+        ClothStepperSettings settings = ClothStepperSettings::plain(IterationLimits::exactly(5));
+        settings.substeps = substeps;
+        return std::make_unique<ClothStepper>(garment, settings);
     };
     StepperCase result{"Substepped" + std::to_string(substeps), make, 1e-7, {}};
     result.exceptions = {

@@ -45,6 +45,12 @@ struct EnergyTerms {
     }
 };
 
+/// E and its gradient at one x.
+struct PotentialValue {
+    double energy = 0.0;  ///< (J)
+    Points gradient;      ///< |V| x 3 (N), zero at pinned vertices
+};
+
 /// E(x) of one implicit step; its minimum is the garment's position at t + dt.
 ///
 ///     IncrementalPotential potential(garment, settings);

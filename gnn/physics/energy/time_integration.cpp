@@ -17,7 +17,7 @@ const InertialStep* TimeIntegration::begin_step(const ClothState& state,
                                                 double contact_distance, double dt) {
     m_active = continues(state, dt);
     if (!m_active) return nullptr;
-    m_step.dt = dt / 1.5;
+    m_step.dt = bdf2_inertial_dt(dt);
     m_step.target =
         (4.0 * state.x - m_x_before) / 3.0 + (dt / 9.0) * (8.0 * m_u - 2.0 * m_u_before);
     m_step.weight.setConstant(state.x.rows(), bdf2_weight);

@@ -17,6 +17,11 @@ struct InertialStep {
     double dt;       ///< of the matrix of most vertices: 2/3 of the step (s)
 };
 
+/// InertialStep::dt of a BDF2 step (s).
+inline double bdf2_inertial_dt(double dt) {
+    return dt / 1.5;
+}
+
 /// The time integration of a stepper.
 ///
 /// BDF2 (Hairer and Wanner, Solving Ordinary Differential Equations II, chapter III.1), from the

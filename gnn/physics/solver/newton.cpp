@@ -75,13 +75,19 @@ Newton::Newton(const Garment& garment, const NewtonSettings& settings)
     validate(settings);
 }
 
-MinimiseReport Newton::minimise(const IncrementalPotential& potential, Points& x) {
+MinimiseReport Newton::minimise(const IncrementalPotential& potential, Points& x,
+                                const PotentialValue* at_x) {
     MinimiseReport report;
     report.finite = false;
     if (potential.garment().vertex_count() != m_vertex_count || x.rows() != m_vertex_count)
         return report;
-    report.energy = potential.value_gradient(x, m_gradient);
-    report.evaluations = 1;
+    if (at_x) {
+        report.energy = at_x->energy;
+        m_gradient = at_x->gradient;
+    } else {
+        report.energy = potential.value_gradient(x, m_gradient);
+        report.evaluations = 1;
+    }
     report.residual = m_gradient.norm() / potential.force_scale();
     report.finite = std::isfinite(report.energy) && std::isfinite(report.residual);
     m_shift = 0.0;

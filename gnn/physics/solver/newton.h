@@ -41,7 +41,9 @@ class Newton {
     /// Lowers E from the given x (|V| x 3, m) on; rows of pinned vertices stay as they are. A
     /// potential of another number of vertices than the garment's, or one that is not finite at x,
     /// leaves x as it is (report.finite is false). E never rises. Never throws.
-    MinimiseReport minimise(const IncrementalPotential& potential, Points& x);
+    /// @param at_x  E and its gradient at x, where they are known already; else null
+    MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
+                            const PotentialValue* at_x = nullptr);
 
  private:
     bool iterate(const IncrementalPotential& potential, Points& x, MinimiseReport& report);

@@ -4,10 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 #include <utility>
 
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 namespace {
@@ -19,23 +18,16 @@ double dot(const Points& a, const Points& b) {
     return a.cwiseProduct(b).sum();
 }
 
-void check_range(const char* name, double value, double lowest, double highest) {
-    if (value >= lowest && value <= highest) return;
-    throw ArgumentError(std::string("QuasiNewtonSettings::") + name,
-                        std::to_string(value) + " is out of range",
-                        "choose from " + std::to_string(lowest) + " to " + std::to_string(highest));
-}
-
 /// The energies of the last iterations, and what became of them as a distance.
 class Gain {
  public:
     Gain(double dt, double mass) : m_scale(dt * std::sqrt(2.0 / mass)) {}
 
     /// @return  see MinimiseReport::gain (m)
-    double after(double energy) {
+    std::optional<double> after(double energy) {
         double& oldest = m_energies[static_cast<size_t>(m_count++) % m_energies.size()];
         const double before = std::exchange(oldest, energy);
-        if (m_count <= span) return std::numeric_limits<double>::infinity();
+        if (m_count <= span) return std::nullopt;
         return m_scale * std::sqrt(std::max(0.0, before - energy));
     }
 
@@ -54,14 +46,18 @@ double shorter_step(double step, double energy, double slope, double trial_energ
 
 }  // namespace
 
+void check(const IterationLimits& limits, const std::string& owner) {
+    check_range(owner + ".iterations", limits.iterations, 0, 10000);
+    check_range(owner + ".least_iterations", limits.least_iterations, 0, 10000);
+    check_range(owner + ".tolerance", limits.tolerance, 0.0, 1e6);
+    check_range(owner + ".least_gain", limits.least_gain, 0.0, 1.0);
+}
+
 QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     : m_settings(settings), m_matrix(garment) {
-    check_range("iterations", settings.iterations, 0, 10000);
-    check_range("tolerance", settings.tolerance, 0.0, 1e6);
-    check_range("least_gain", settings.least_gain, 0.0, 1.0);
-    check_range("least_iterations", settings.least_iterations, 0, 10000);
-    check_range("history", settings.history, 0, 50);
-    check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
+    check(settings, "QuasiNewtonSettings");
+    check_range("QuasiNewtonSettings.history", settings.history, 0, 50);
+    check_range("QuasiNewtonSettings.contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
     const Eigen::Index free = m_matrix.free_count();
     m_history.allocate(settings.history, free);
     for (Points* array : {&m_gradient, &m_next_gradient, &m_direction, &m_right_side, &m_gathered,
@@ -75,20 +71,27 @@ void QuasiNewton::precondition(const Points& gradient, Points& out) const {
     m_matrix.scatter(m_preconditioned, out);
 }
 
-MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x) {
+MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x,
+                                     const PotentialValue* at_x) {
+    return minimise(potential, x, m_settings, at_x);
+}
+
+MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x,
+                                     const IterationLimits& limits, const PotentialValue* at_x) {
     MinimiseReport report;
-    if (!start(potential, x, report)) {
+    if (!start(potential, x, at_x, report)) {
         report.finite = false;
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
     const auto met = [&] {
-        return report.residual <= m_settings.tolerance || report.gain < m_settings.least_gain;
+        return report.residual <= limits.tolerance ||
+               (report.gain && *report.gain < limits.least_gain);
     };
     Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
     gain.after(report.energy);
-    while (report.iterations < m_settings.iterations) {
-        if (met() && report.iterations >= m_settings.least_iterations) break;
+    while (report.iterations < limits.iterations) {
+        if (met() && report.iterations >= limits.least_iterations) break;
         if (!iterate(potential, x, report)) {
             report.gain = 0.0;
             break;
@@ -100,16 +103,21 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
 }
 
 bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
-                        MinimiseReport& report) {
+                        const PotentialValue* at_x, MinimiseReport& report) {
     const Garment& garment = potential.garment();
     if (!m_matrix.fits(garment) || x.rows() != garment.vertex_count() || !x.allFinite())
         return false;
     if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
     m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
-    report.energy = potential.value_gradient(x, m_all_gradient);
-    report.evaluations = 1;
-    m_matrix.gather(m_all_gradient, m_gradient);
+    if (at_x) {
+        report.energy = at_x->energy;
+        m_matrix.gather(at_x->gradient, m_gradient);
+    } else {
+        report.energy = potential.value_gradient(x, m_all_gradient);
+        report.evaluations = 1;
+        m_matrix.gather(m_all_gradient, m_gradient);
+    }
     update_residual(potential, report);
     return std::isfinite(report.energy) && m_gradient.allFinite();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <limits>
+#include <optional>
+#include <string>
 
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/solver/lbfgs_history.h"
@@ -8,28 +9,38 @@
 
 namespace cloth {
 
-struct QuasiNewtonSettings {
+/// When the iterations of a minimisation end.
+struct IterationLimits {
     int iterations =
         10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
+    int least_iterations = 0;  ///< but not fewer than these, 0 to 10000
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
     double least_gain = 0.0;   ///< or when MinimiseReport::gain is below this (m), 0 to 1; 0: never
-    int least_iterations = 0;  ///< but not before these, 0 to 10000
-    int history = 8;           ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
-    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
-                                     ///< contact stays out of the matrix
-    PotentialSettings potential;     ///< for steppers, which make the potential themselves
 
     /// What a simulation should use: ten iterations, and more, up to a hundred, for as long as five
     /// of them still gain 3 mm (gravity alone gains 11 mm in a frame of 1/30 s). The residual does
     /// not tell: that of a T-shirt in a jump is as high as that of stiff fabric that falls in slow
     /// motion, and only the latter needs the iterations.
-    static QuasiNewtonSettings controlled(int least = 10, int most = 100) {
-        QuasiNewtonSettings settings;
-        settings.iterations = most;
-        settings.least_iterations = least;
-        settings.least_gain = 3e-3;
-        return settings;
+    static IterationLimits controlled(int least = 10, int most = 100) {
+        return {most, least, 0.0, 3e-3};
     }
+    static IterationLimits exactly(int count) { return {count, 0, 0.0, 0.0}; }
+    /// None at all: a step is where it starts, such as the network's answer.
+    static IterationLimits none() { return exactly(0); }
+    /// Until the residual is at the tolerance, at most so many.
+    static IterationLimits until(double tolerance, int most) { return {most, 0, tolerance, 0.0}; }
+};
+
+/// @throws ArgumentError naming `owner` and the field that is out of range
+void check(const IterationLimits& limits, const std::string& owner);
+
+struct QuasiNewtonSettings : IterationLimits {
+    int history = 8;  ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
+    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
+                                     ///< contact stays out of the matrix
+
+    QuasiNewtonSettings() = default;
+    QuasiNewtonSettings(const IterationLimits& limits) : IterationLimits(limits) {}
 };
 
 /// What one minimisation reached.
@@ -40,8 +51,8 @@ struct MinimiseReport {
     double residual = 0.0;  ///< |gradient| / force_scale() at the end, over the free vertices
     /// What the last five iterations gained, as a distance (m): dt sqrt(2 (decrease of E) / mass),
     /// by which the garment as a whole would have to be moved against its inertia for as much
-    /// energy. +inf: there were fewer; 0: E could not be lowered any further.
-    double gain = std::numeric_limits<double>::infinity();
+    /// energy. None: there were fewer; 0: E could not be lowered any further.
+    std::optional<double> gain;
     bool converged = false;  ///< the tolerance, or the least gain, was met
     bool finite = true;      ///< false: the energy at the start was not finite, x is as it was
 };
@@ -63,15 +74,19 @@ class QuasiNewton {
     explicit QuasiNewton(const Garment& garment, QuasiNewtonSettings settings = {});
 
     const QuasiNewtonSettings& settings() const { return m_settings; }
-    void set_iterations(int iterations) { m_settings.iterations = iterations; }
-    void set_tolerance(double tolerance) { m_settings.tolerance = tolerance; }
 
     /// Lowers E from the given x (|V| x 3, m) on; rows of pinned vertices stay as they are. A
     /// potential of another fabric or time step than the last makes P anew; one of other vertices
     /// or pins is refused like a non-finite one (report.finite is false). Never throws.
-    MinimiseReport minimise(const IncrementalPotential& potential, Points& x);
+    /// @param at_x  E and its gradient at x, where they are known already; else null
+    MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
+                            const PotentialValue* at_x = nullptr);
+    /// The same within other limits than the settings'.
+    MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
+                            const IterationLimits& limits, const PotentialValue* at_x = nullptr);
 
-    /// Makes P for a fabric and a time step (s) ahead of time. False: not positive definite.
+    /// Makes P for a fabric and a time step (s) ahead of time; those of the last 16 are kept.
+    /// False: not positive definite.
     bool prepare(const Garment& garment, double dt) { return m_matrix.prepare(garment, dt); }
 
     /// out = P^-1 gradient (|V| x 3, m), zero at pinned vertices. Needs `prepare` or `minimise`
@@ -81,7 +96,8 @@ class QuasiNewton {
     const QuasiNewtonMatrix& matrix() const { return m_matrix; }
 
  private:
-    bool start(const IncrementalPotential& potential, const Points& x, MinimiseReport& report);
+    bool start(const IncrementalPotential& potential, const Points& x, const PotentialValue* at_x,
+               MinimiseReport& report);
     bool iterate(const IncrementalPotential& potential, Points& x, MinimiseReport& report);
     void find_direction(const IncrementalPotential& potential, const Points& x);
     bool line_search(const IncrementalPotential& potential, Points& x, MinimiseReport& report);

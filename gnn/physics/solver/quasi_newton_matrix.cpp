@@ -1,5 +1,6 @@
 #include "gnn/physics/solver/quasi_newton_matrix.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cloth {
@@ -53,22 +54,40 @@ QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
     }
     Eigen::SparseMatrix<double> select(free_count(), m_vertex_count);
     select.setFromTriplets(selection.begin(), selection.end());
+    m_masses.resize(free_count());
     m_laplacian = select * cotangent_laplacian(garment.rest()) * select.transpose();
     for (Points* array : {&m_residual, &m_preconditioned, &m_direction, &m_product, &m_p_direction})
         array->resize(free_count(), 3);
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
-    if (m_dt == dt && same_fabric(m_fabric, garment.fabric())) return true;
-    m_dt = 0.0;
-    m_matrix = garment.fabric().longitudinal() * m_laplacian;
-    for (Eigen::Index row = 0; row < free_count(); ++row)
-        m_matrix.coeffRef(row, row) +=
-            garment.masses()[m_free[static_cast<size_t>(row)]] / (dt * dt);
-    if (free_count() > 0 && !m_factor.factorise(m_matrix)) return false;
+    if (!same_fabric(m_fabric, garment.fabric())) m_factors.clear();
     m_fabric = garment.fabric();
-    m_dt = dt;
-    return true;
+    const auto kept = std::find_if(m_factors.begin(), m_factors.end(),
+                                   [dt](const Factor& factor) { return factor.dt == dt; });
+    if (kept != m_factors.end()) {
+        m_factors.splice(m_factors.begin(), m_factors, kept);
+        return true;
+    }
+    for (Eigen::Index row = 0; row < free_count(); ++row)
+        m_masses[row] = garment.masses()[m_free[static_cast<size_t>(row)]];
+    if (m_factors.size() == max_factors) m_factors.pop_back();
+    m_factors.push_front({dt, {}});
+    ++m_factorisations;
+    if (free_count() == 0 || m_factors.front().factor.factorise(assembled(dt))) return true;
+    m_factors.pop_front();
+    return false;
+}
+
+Eigen::SparseMatrix<double> QuasiNewtonMatrix::assembled(double dt) const {
+    Eigen::SparseMatrix<double> matrix = m_fabric.longitudinal() * m_laplacian;
+    for (Eigen::Index row = 0; row < free_count(); ++row)
+        matrix.coeffRef(row, row) += m_masses[row] / (dt * dt);
+    return matrix;
+}
+
+Eigen::SparseMatrix<double> QuasiNewtonMatrix::matrix() const {
+    return assembled(m_factors.front().dt);
 }
 
 bool QuasiNewtonMatrix::fits(const Garment& garment) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <list>
 #include <vector>
 
 #include "gnn/physics/solver/contact_hessian.h"
@@ -20,9 +21,14 @@ class QuasiNewtonMatrix {
  public:
     explicit QuasiNewtonMatrix(const Garment& garment);
 
-    /// Factorises P for the garment's masses and fabric and the time step (s), unless that is what
-    /// it holds. False: P is not positive definite in double precision.
+    /// Chooses P for the garment's masses and fabric and the time step (s) and factorises it, unless
+    /// it is among the factors that are kept: those of the last max_factors time steps, so that a
+    /// step and its parts take turns at no cost. False: P is not positive definite in double
+    /// precision.
     bool prepare(const Garment& garment, double dt);
+
+    static constexpr int max_factors = 16;
+    int factorisations() const { return m_factorisations; }  ///< so far
 
     /// Whether a garment has the vertices and pins that this matrix was made for.
     bool fits(const Garment& garment) const;
@@ -36,7 +42,7 @@ class QuasiNewtonMatrix {
     void add_scaled(double scale, const Points& free, Points& all) const;
 
     /// out = P^-1 b (free).
-    void solve(const Points& b, Points& out) const { m_factor.solve(b, out); }
+    void solve(const Points& b, Points& out) const { m_factors.front().factor.solve(b, out); }
 
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
     /// preconditioned by P, each of which costs one solve with P. The blocks anticipate the step
@@ -45,18 +51,24 @@ class QuasiNewtonMatrix {
 
     const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
     Eigen::Index free_count() const { return static_cast<Eigen::Index>(m_free.size()); }
-    Eigen::SparseMatrix<double> matrix() const { return m_matrix; }  ///< P (n x n), both triangles
+    Eigen::SparseMatrix<double> matrix() const;  ///< P (n x n), both triangles
 
  private:
+    struct Factor {
+        double dt;  ///< (s)
+        SupernodalCholesky factor;
+    };
+    Eigen::SparseMatrix<double> assembled(double dt) const;
+
     Eigen::Index m_vertex_count;
     std::vector<int> m_pins;
     std::vector<int> m_free;                  ///< vertex of each free row
     std::vector<int> m_row_of;                ///< |V|
     Eigen::SparseMatrix<double> m_laplacian;  ///< free rows and columns
-    Eigen::SparseMatrix<double> m_matrix;
-    Fabric m_fabric;
-    double m_dt = 0.0;  ///< 0: nothing factorised yet
-    SupernodalCholesky m_factor;
+    VectorX m_masses;                         ///< free rows
+    Fabric m_fabric;                          ///< of the factors
+    std::list<Factor> m_factors;              ///< the one in use first
+    int m_factorisations = 0;
     mutable Points m_residual, m_preconditioned, m_direction, m_product, m_p_direction;  ///< n x 3
 };
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "data/core/errors.h"
@@ -20,13 +19,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-StepReport failed() {
-    StepReport report;
-    report.residual = std::numeric_limits<double>::quiet_NaN();
-    report.finite = false;
-    return report;
 }
 
 const XpbdSettings& checked(const XpbdSettings& settings) {
@@ -65,8 +57,8 @@ std::string XpbdStepper::name() const {
 }
 
 StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& state) {
-    StepReport report = failed();
-    if (!is_valid_step(*m_garment, state, boundary, dt)) return report;
+    if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
+    StepReport report;
     const Clock::time_point begin = Clock::now();
     find_contacts(boundary, state);
     report.times.proximity = milliseconds_since(begin);
@@ -82,7 +74,7 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
     if (m_settings.self_contact.on()) finish_self_contact(boundary, dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
-    return report.finite ? report : failed();
+    return report.finite ? report : StepReport::failed();
 }
 
 /// Replaces the state, or leaves it if a number is not finite.

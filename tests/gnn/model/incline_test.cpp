@@ -11,8 +11,7 @@
 
 #include "data/authoring/sheet.h"
 #include "data/core/paths.h"
-#include "gnn/model/learned_cloth.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/model/make_cloth.h"
 
 namespace cloth {
 namespace {
@@ -81,12 +80,14 @@ TEST_P(Incline, SlidesAboveItAsCoulombSays) {
 }
 
 std::unique_ptr<Stepper> solver(const Garment& garment) {
-    return std::make_unique<QuasiNewtonStepper>(garment, QuasiNewtonSettings{});
+    return std::make_unique<ClothStepper>(garment, ClothStepperSettings::plain());
 }
 
 std::unique_ptr<Stepper> learned(const Garment& garment) {
-    return make_learned_cloth(garment, std::make_shared<const EngineWeights>(
-                                           Weights::load(asset_path("weights/small.safetensors"))));
+    ClothSettings settings;
+    settings.weights = std::make_shared<const EngineWeights>(
+        Weights::load(asset_path("weights/small.safetensors")));
+    return make_cloth(garment, settings);
 }
 
 INSTANTIATE_TEST_SUITE_P(Steppers, Incline,

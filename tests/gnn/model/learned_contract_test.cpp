@@ -1,7 +1,7 @@
 // The contract of all steppers, kept by the learned ones: the engine with the committed weights.
 
 #include "data/core/paths.h"
-#include "gnn/model/learned_cloth.h"
+#include "gnn/model/make_cloth.h"
 #include "tests/gnn/stepper_contract.h"
 
 namespace cloth::test {
@@ -11,10 +11,8 @@ StepperCase learned(const std::string& variant, int refine) {
     const auto make = [variant, refine](const Garment& garment) {
         const auto weights = std::make_shared<const EngineWeights>(
             Weights::load(asset_path("weights/" + variant + ".safetensors")));
-        LearnedStepperSettings settings;
-        settings.refine = refine;
-        return std::make_unique<LearnedStepper>(garment, std::make_shared<Engine>(weights),
-                                                settings);
+        return make_cloth(garment, std::make_shared<Engine>(weights),
+                          ClothStepperSettings::plain(IterationLimits::exactly(refine)));
     };
     const std::string learnt = "the network only comes near it, and refinement is bounded";
     std::map<Promise, std::string> exceptions = {
@@ -34,8 +32,10 @@ StepperCase shipped() {
     StepperCase result = learned("fast", 10);
     result.name = "smallShipped";
     result.make = [](const Garment& garment) {
-        return make_learned_cloth(garment, std::make_shared<const EngineWeights>(Weights::load(
-                                               asset_path("weights/small.safetensors"))));
+        ClothSettings settings;
+        settings.weights = std::make_shared<const EngineWeights>(
+            Weights::load(asset_path("weights/small.safetensors")));
+        return make_cloth(garment, settings);
     };
     return result;
 }

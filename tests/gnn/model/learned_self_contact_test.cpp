@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "collision/self/self_tangles.h"
-#include "gnn/model/learned_stepper.h"
+#include "gnn/model/make_cloth.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
 namespace cloth {
@@ -25,9 +25,11 @@ class SilentPredictor : public Predictor {
 /// The most tangles of a frame while a folded sheet falls on the floor.
 int most_tangles(double thickness) {
     const test::LayerScene scene = test::folded_sheet(200, 0.02);
-    LearnedStepperSettings settings;
-    settings.potential.self_contact.thickness = thickness;
-    LearnedStepper learned(scene.garment, std::make_shared<SilentPredictor>(), settings);
+    ClothStepperSettings settings =
+        ClothStepperSettings::plain(IterationLimits::controlled());
+    settings.step.potential.self_contact.thickness = thickness;
+    const auto made = make_cloth(scene.garment, std::make_shared<SilentPredictor>(), settings);
+    Stepper& learned = *made;
     ClothState state = scene.start;
     SelfTangles tangles(scene.garment);
     int most = 0;
@@ -43,7 +45,7 @@ int most_tangles(double thickness) {
 
 }  // namespace
 
-TEST(LearnedLayers, AreKeptApartByTheRefinementAndTheLastSafety) {
+TEST(LearnedSelfContact, AreKeptApartByTheIterationsAndContactProjection) {
     EXPECT_GT(most_tangles(0.0), 20) << "the scene asks for nothing";
     EXPECT_EQ(most_tangles(4e-3), 0);
 }

@@ -7,9 +7,7 @@
 
 #include "data/authoring/sheet.h"
 #include "data/core/paths.h"
-#include "gnn/model/learned_cloth.h"
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/model/make_cloth.h"
 
 namespace cloth {
 namespace {
@@ -63,15 +61,16 @@ double rms_mm(const Points& a, const Points& b) {
 
 TEST(RestShape, SolverAndLearnedClothHangWhereTheReferenceDoes) {
     const Hanging scene;
-    NewtonStepper reference(scene.garment);
+    ClothStepper reference(scene.garment, ClothStepperSettings::reference());
     const Points expected = scene.at_rest(reference);
     ASSERT_GT(rms_mm(expected, scene.garment.rest().vertices), 5.0) << "it does not hang at all";
-    QuasiNewtonStepper solver(scene.garment, {});
+    ClothStepper solver(scene.garment, ClothStepperSettings::plain());
     EXPECT_LT(rms_mm(scene.at_rest(solver), expected), 2.0);
     for (const char* network : {"fast", "baseline"}) {
-        const auto weights = std::make_shared<const EngineWeights>(
+        ClothSettings settings;
+        settings.weights = std::make_shared<const EngineWeights>(
             Weights::load(asset_path(std::string("weights/") + network + ".safetensors")));
-        const auto learned = make_learned_cloth(scene.garment, weights);
+        const auto learned = make_cloth(scene.garment, settings);
         EXPECT_LT(rms_mm(scene.at_rest(*learned), expected), 2.0) << network;
     }
 }

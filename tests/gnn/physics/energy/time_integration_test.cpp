@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 using namespace cloth;
 using cloth::test::sheet_on_sphere;
@@ -46,11 +46,10 @@ double error_after_one_second(Integrator kind, int steps) {
 /// Root mean square distance (m) of a sheet after half a second of swing to the fine solution.
 double swing_error(Integrator kind, const Points& fine) {
     SolverScene scene = swinging_sheet(8);
-    QuasiNewtonSettings settings;
-    settings.iterations = 100;
-    settings.tolerance = 1e-4;
-    settings.potential.integrator = kind;
-    QuasiNewtonStepper stepper(scene.garment, settings);
+    ClothStepperSettings settings =
+        ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
+    settings.step.potential.integrator = kind;
+    ClothStepper stepper(scene.garment, settings);
     for (int k = 0; k < 15; ++k)
         EXPECT_TRUE(stepper.step(scene.boundary, 1.0 / 30.0, scene.state).finite);
     return std::sqrt((scene.state.x - fine).rowwise().squaredNorm().mean());
@@ -104,9 +103,9 @@ TEST(TimeIntegration, FreeFallIsExactAfterTheFirstStep) {
     SolverScene scene = sheet_on_sphere(8);
     scene.boundary.obstacles.clear();
     const Points start = scene.state.x, v0 = scene.state.v;
-    QuasiNewtonSettings settings;
-    settings.potential.integrator = Integrator::bdf2;
-    QuasiNewtonStepper stepper(scene.garment, settings);
+    ClothStepperSettings settings = ClothStepperSettings::plain();
+    settings.step.potential.integrator = Integrator::bdf2;
+    ClothStepper stepper(scene.garment, settings);
     const double dt = 1.0 / 30.0;
     const auto fallen = [&](int step) {
         EXPECT_TRUE(stepper.step(scene.boundary, dt, scene.state).finite);
@@ -122,10 +121,9 @@ TEST(TimeIntegration, FreeFallIsExactAfterTheFirstStep) {
 
 TEST(TimeIntegration, Bdf2BringsASwingingSheetNearerToTheFineSolution) {
     SolverScene scene = swinging_sheet(8);
-    QuasiNewtonSettings settings;
-    settings.iterations = 100;
-    settings.tolerance = 1e-4;
-    QuasiNewtonStepper stepper(scene.garment, settings);
+    ClothStepperSettings settings =
+        ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
+    ClothStepper stepper(scene.garment, settings);
     for (int k = 0; k < 15 * 32; ++k) stepper.step(scene.boundary, 1.0 / 960.0, scene.state);
     EXPECT_LT(swing_error(Integrator::bdf2, scene.state.x),
               0.7 * swing_error(Integrator::backward_euler, scene.state.x));
@@ -134,10 +132,9 @@ TEST(TimeIntegration, Bdf2BringsASwingingSheetNearerToTheFineSolution) {
 TEST(TimeIntegration, Bdf2DoesNotThrowClothBackFromASphere) {
     SolverScene scene = sheet_on_sphere(12);
     scene.state.v.col(1).setConstant(-3.0);
-    QuasiNewtonSettings settings;
-    settings.iterations = 30;
-    settings.potential.integrator = Integrator::bdf2;
-    QuasiNewtonStepper stepper(scene.garment, settings);
+    ClothStepperSettings settings = ClothStepperSettings::plain(IterationLimits::exactly(30));
+    settings.step.potential.integrator = Integrator::bdf2;
+    ClothStepper stepper(scene.garment, settings);
     const double top = scene.state.x.col(1).maxCoeff();
     for (int k = 0; k < 20; ++k) {
         ASSERT_TRUE(stepper.step(scene.boundary, 1.0 / 30.0, scene.state).finite);

@@ -9,8 +9,7 @@
 
 #include "collision/proximity/metrics.h"
 #include "collision/self/self_tangles.h"
-#include "gnn/physics/stepper/newton_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 
 namespace cloth {
@@ -20,10 +19,10 @@ using namespace test;
 
 constexpr double dt = 1.0 / 30.0;
 
-QuasiNewtonSettings solver(double thickness, int threads = 0) {
-    QuasiNewtonSettings settings;
-    settings.potential.self_contact.thickness = thickness;
-    settings.potential.self_contact.threads = threads;
+ClothStepperSettings solver(double thickness, int threads = 0) {
+    ClothStepperSettings settings = ClothStepperSettings::plain();
+    settings.step.potential.self_contact.thickness = thickness;
+    settings.step.potential.self_contact.threads = threads;
     return settings;
 }
 
@@ -53,10 +52,10 @@ double least_distance(const Garment& garment, const Points& x) {
 TEST(SelfContactScenes, AFoldedSheetOnTheFloorKeepsItsLayersApart) {
     const LayerScene scene = folded_sheet();
     ClothState state;
-    QuasiNewtonStepper without(scene.garment, solver(0.0));
+    ClothStepper without(scene.garment, solver(0.0));
     EXPECT_GT(most_tangles(scene, without, 15, state), 100u) << "the scene asks for nothing";
 
-    QuasiNewtonStepper with(scene.garment, solver(4e-3));
+    ClothStepper with(scene.garment, solver(4e-3));
     EXPECT_EQ(most_tangles(scene, with, 60, state), 0u);
     EXPECT_GT(least_distance(scene.garment, state.x), 1e-3);
     EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.1);
@@ -66,10 +65,10 @@ TEST(SelfContactScenes, AFoldedSheetOnTheFloorKeepsItsLayersApart) {
 TEST(SelfContactScenes, ARibbonFallsIntoAPileWithoutATangle) {
     const LayerScene scene = falling_ribbon();
     ClothState state;
-    QuasiNewtonStepper without(scene.garment, solver(0.0));
+    ClothStepper without(scene.garment, solver(0.0));
     EXPECT_GT(most_tangles(scene, without, 15, state), 100u) << "the scene asks for nothing";
 
-    QuasiNewtonStepper with(scene.garment, solver(4e-3));
+    ClothStepper with(scene.garment, solver(4e-3));
     EXPECT_EQ(most_tangles(scene, with, 60, state), 0u);
     EXPECT_LT(state.x.col(1).maxCoeff(), 0.3) << "it is still in the air";
     EXPECT_LT(measure_stretch(scene.garment, state.x).p99, 1.1);
@@ -79,7 +78,7 @@ TEST(SelfContactScenes, ASheetThatFallsOnASheetStaysAbove) {
     const LayerScene scene = sheet_on_sheet();
     const std::vector<int> piece = garment_pieces(scene.garment);
     ClothState state;
-    QuasiNewtonStepper stepper(scene.garment, solver(4e-3));
+    ClothStepper stepper(scene.garment, solver(4e-3));
     EXPECT_EQ(most_tangles(scene, stepper, 30, state), 0u);
     SelfProximity proximity(scene.garment, 4e-3);
     proximity.find(state.x, Points::Zero(state.x.rows(), 3), 6e-3, 1);
@@ -102,7 +101,7 @@ TEST(SelfContactScenes, ATangledStartIsReportedAndGetsNoWorse) {
     SelfTangles tangles(scene.garment);
     const int tangled = static_cast<int>(tangles.find(scene.start.x).size());
     ASSERT_GT(tangled, 15);
-    QuasiNewtonStepper stepper(scene.garment, solver(4e-3));
+    ClothStepper stepper(scene.garment, solver(4e-3));
     ClothState state = scene.start;
     for (int frame = 0; frame < 20; ++frame) {
         const StepReport report = stepper.step(scene.boundary, dt, state);
@@ -117,9 +116,9 @@ TEST(SelfContactScenes, ATangledStartIsReportedAndGetsNoWorse) {
 
 TEST(SelfContactScenes, TheReferenceKeepsLayersApartToo) {
     const LayerScene scene = folded_sheet(120, 0.02);
-    NewtonStepperSettings settings;
-    settings.potential.self_contact.thickness = 4e-3;
-    NewtonStepper reference(scene.garment, settings);
+    ClothStepperSettings settings = ClothStepperSettings::reference();
+    settings.step.potential.self_contact.thickness = 4e-3;
+    ClothStepper reference(scene.garment, settings);
     ClothState state = scene.start;
     SelfTangles tangles(scene.garment);
     int converged = 0;
@@ -145,7 +144,7 @@ TEST(SelfContactScenes, SubstepsOfSpringsKeepLayersApartToo) {
 TEST(SelfContactScenes, ClothThatDoesNotMeetItselfMovesAsWithoutBitByBit) {
     const Garment garment("sheet", make_sheet(0.3, 0.3, 200), Fabric::soft_cotton());
     const Boundary boundary = outside({ball(0.15)});
-    QuasiNewtonStepper without(garment, solver(0.0)), with(garment, solver(4e-3));
+    ClothStepper without(garment, solver(0.0)), with(garment, solver(4e-3));
     ClothState a = ClothState::at_rest(garment);
     a.x.col(1).array() += 0.16;
     ClothState b = a;
@@ -159,7 +158,7 @@ TEST(SelfContactScenes, ClothThatDoesNotMeetItselfMovesAsWithoutBitByBit) {
 
 TEST(SelfContactScenes, SameBitsForAnyNumberOfThreads) {
     const LayerScene scene = falling_ribbon(200);
-    QuasiNewtonStepper one(scene.garment, solver(4e-3, 1)), three(scene.garment, solver(4e-3, 3));
+    ClothStepper one(scene.garment, solver(4e-3, 1)), three(scene.garment, solver(4e-3, 3));
     ClothState a = scene.start, b = scene.start;
     for (int frame = 0; frame < 20; ++frame) {
         one.step(scene.boundary, dt, a);

@@ -1,8 +1,7 @@
-#include "gnn/physics/stepper/newton_stepper.h"
-
 #include <limits>
 
 #include "data/core/errors.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
 using namespace cloth;
@@ -12,7 +11,7 @@ namespace {
 
 const double pi = std::acos(-1.0);
 
-class NewtonStepperTest : public ::testing::TestWithParam<Fabric> {};
+class ReferenceStep : public ::testing::TestWithParam<Fabric> {};
 
 Obstacle sphere(const Vec3& centre, double radius) {
     Obstacle obstacle;
@@ -43,14 +42,14 @@ double slide(double angle, double friction, const Fabric& fabric, int steps, dou
             (flat.x() * down + flat.z() * Vec3::UnitZ() + 3.99e-3 * normal).transpose();
     }
     const Garment garment("sheet", mesh, fabric);
-    NewtonStepper stepper(garment);
+    ClothStepper stepper(garment, ClothStepperSettings::reference());
     ClothState state = ClothState::at_rest(garment);
     Boundary boundary;
     boundary.obstacles.push_back(incline(angle, friction));
     for (int k = 0; k < steps; ++k) {
         const StepReport report = stepper.step(boundary, dt, state);
         EXPECT_TRUE(report.finite);
-        EXPECT_LT(report.residual, 1e-4);
+        EXPECT_LT(report.residual.value(), 1e-4);
         EXPECT_EQ(report.max_penetration, 0.0);
     }
     return ((state.x - mesh.vertices) * down).mean();
@@ -58,9 +57,9 @@ double slide(double angle, double friction, const Fabric& fabric, int steps, dou
 
 }  // namespace
 
-TEST_P(NewtonStepperTest, FreeFallEqualsTheClosedForm) {
+TEST_P(ReferenceStep, FreeFallEqualsTheClosedForm) {
     const Garment garment("sheet", sheet(6, 0.3), GetParam());
-    NewtonStepper stepper(garment);
+    ClothStepper stepper(garment, ClothStepperSettings::reference());
     ClothState state = ClothState::at_rest(garment);
     const Points start = state.x;
     const Eigen::RowVector3d v(0.3, 1.0, -0.2), g(0, -9.81, 0);
@@ -76,9 +75,9 @@ TEST_P(NewtonStepperTest, FreeFallEqualsTheClosedForm) {
     }
 }
 
-TEST_P(NewtonStepperTest, HangingSheetConvergesInFewIterationsAndKeepsItsPins) {
+TEST_P(ReferenceStep, HangingSheetConvergesInFewIterationsAndKeepsItsPins) {
     const Garment garment("sheet", sheet(12, 0.5), GetParam(), {0, 11});
-    NewtonStepper stepper(garment);
+    ClothStepper stepper(garment, ClothStepperSettings::reference());
     ClothState state = ClothState::at_rest(garment);
     Boundary boundary;
     boundary.pin_targets.resize(2, 3);
@@ -86,8 +85,8 @@ TEST_P(NewtonStepperTest, HangingSheetConvergesInFewIterationsAndKeepsItsPins) {
     int iterations = 0;
     for (int k = 0; k < 25; ++k) {
         const StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
-        EXPECT_TRUE(report.converged) << "step " << k << ", residual " << report.residual;
-        EXPECT_LE(report.residual, 1e-4);
+        EXPECT_TRUE(report.converged) << "step " << k << ", residual " << report.residual.value();
+        EXPECT_LE(report.residual.value(), 1e-4);
         EXPECT_LT(report.iterations, 40) << "step " << k;
         iterations += report.iterations;
         EXPECT_EQ(state.x.row(0), boundary.pin_targets.row(0));
@@ -97,11 +96,11 @@ TEST_P(NewtonStepperTest, HangingSheetConvergesInFewIterationsAndKeepsItsPins) {
     EXPECT_LT(state.x.col(1).minCoeff(), -0.3) << "it should have swung down";
 }
 
-TEST_P(NewtonStepperTest, AtEquilibriumThePinsCarryTheWeight) {
+TEST_P(ReferenceStep, AtEquilibriumThePinsCarryTheWeight) {
     const Garment garment("sheet", sheet(7, 0.3), GetParam(), {0, 1, 2, 3, 4, 5, 6});
-    NewtonStepperSettings settings;
-    settings.tolerance = 1e-7;
-    NewtonStepper stepper(garment, settings);
+    NewtonSettings newton;
+    newton.tolerance = 1e-7;
+    ClothStepper stepper(garment, ClothStepperSettings::reference(newton));
     ClothState state = ClothState::at_rest(garment);
     for (Eigen::Index i = 0; i < state.x.rows(); ++i)  // hang down from z = 0
         state.x.row(i) << state.x(i, 0), -state.x(i, 2), 0.0;
@@ -119,9 +118,9 @@ TEST_P(NewtonStepperTest, AtEquilibriumThePinsCarryTheWeight) {
                 1e-3 * 9.81 * garment.masses().sum());
 }
 
-TEST_P(NewtonStepperTest, ASheetDroppedOnASphereStaysOutside) {
+TEST_P(ReferenceStep, ASheetDroppedOnASphereStaysOutside) {
     const Garment garment("sheet", sheet(14, 0.5), GetParam());
-    NewtonStepper stepper(garment);
+    ClothStepper stepper(garment, ClothStepperSettings::reference());
     ClothState state = ClothState::at_rest(garment);
     state.x.rowwise() -= Eigen::RowVector3d(0.27, 0, 0.23);
     Boundary boundary;
@@ -142,11 +141,11 @@ TEST_P(NewtonStepperTest, ASheetDroppedOnASphereStaysOutside) {
     EXPECT_GE(converged, 6);
 }
 
-TEST_P(NewtonStepperTest, AFastSpherePushesTheSheetAhead) {
+TEST_P(ReferenceStep, AFastSpherePushesTheSheetAhead) {
     const Garment garment("sheet", sheet(10, 0.4), GetParam());
-    NewtonStepperSettings settings;
-    settings.contact_updates = 1;
-    NewtonStepper stepper(garment, settings);
+    ClothStepperSettings settings = ClothStepperSettings::reference();
+    settings.step.contact_updates = 1;
+    ClothStepper stepper(garment, settings);
     ClothState state = ClothState::at_rest(garment);
     Boundary boundary;
     boundary.obstacles.push_back(sphere(Vec3(0.2, -0.16, 0.2), 0.15));
@@ -160,7 +159,7 @@ TEST_P(NewtonStepperTest, AFastSpherePushesTheSheetAhead) {
     EXPECT_GT(state.x.col(1).maxCoeff(), 0.15);
 }
 
-TEST_P(NewtonStepperTest, HoldsBelowTheFrictionAngleAndSlidesAbove) {
+TEST_P(ReferenceStep, HoldsBelowTheFrictionAngleAndSlidesAbove) {
     const double friction = 0.5, dt = 1.0 / 60.0;  // friction angle 26.6 degrees
     const int steps = 20;
     // Below it only the smoothing creeps: slip r / sqrt(1 - r^2) per step, r = tan(angle) / mu.
@@ -174,9 +173,9 @@ TEST_P(NewtonStepperTest, HoldsBelowTheFrictionAngleAndSlidesAbove) {
     EXPECT_NEAR(slide(above, friction, GetParam(), steps, dt), expected, 0.03 * expected);
 }
 
-TEST_P(NewtonStepperTest, AFailedStepLeavesTheStateUntouched) {
+TEST_P(ReferenceStep, AFailedStepLeavesTheStateUntouched) {
     const Garment garment("sheet", sheet(4, 0.2), GetParam(), {0});
-    NewtonStepper stepper(garment);
+    ClothStepper stepper(garment, ClothStepperSettings::reference());
     Boundary good;
     good.pin_targets = garment.rest().vertices.topRows(1);
     const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -200,12 +199,13 @@ TEST_P(NewtonStepperTest, AFailedStepLeavesTheStateUntouched) {
     EXPECT_TRUE(stepper.step(good, 0.01, state).finite);
 }
 
-TEST_P(NewtonStepperTest, EqualInputsGiveEqualBits) {
+TEST_P(ReferenceStep, EqualInputsGiveEqualBits) {
     const Garment garment("sheet", sheet(8, 0.3), GetParam());
     Boundary boundary;
     boundary.obstacles.push_back(sphere(Vec3(0.15, -0.11, 0.15), 0.1));
     ClothState first = ClothState::at_rest(garment), second = first;
-    NewtonStepper a(garment), b(garment);
+    ClothStepper a(garment, ClothStepperSettings::reference());
+    ClothStepper b(garment, ClothStepperSettings::reference());
     for (int k = 0; k < 5; ++k) {
         a.step(boundary, 1.0 / 30.0, first);
         b.step(boundary, 1.0 / 30.0, second);
@@ -214,19 +214,23 @@ TEST_P(NewtonStepperTest, EqualInputsGiveEqualBits) {
     EXPECT_EQ(first.v, second.v);
 }
 
-TEST_P(NewtonStepperTest, SettingsOutOfRangeAreRefused) {
+TEST_P(ReferenceStep, SettingsOutOfRangeAreRefused) {
     const Garment garment("sheet", sheet(4, 0.2), GetParam());
-    NewtonStepperSettings settings;
-    settings.contact_updates = -1;
-    EXPECT_THROW(NewtonStepper(garment, settings), ArgumentError);
-    settings = {};
-    settings.potential.contact_distance = -1.0;
-    EXPECT_THROW(NewtonStepper(garment, settings), ArgumentError);
-    settings = {};
-    settings.max_iterations = -5;
-    EXPECT_THROW(NewtonStepper(garment, settings), ArgumentError);
+    const auto expect_refused = [&](auto change) {
+        ClothStepperSettings settings = ClothStepperSettings::reference();
+        change(settings.step);
+        EXPECT_THROW(ClothStepper(garment, settings), ArgumentError);
+    };
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    expect_refused([](StepSettings& step) { step.contact_updates = -1; });
+    expect_refused([](StepSettings& step) { step.contact_updates = 11; });
+    expect_refused([](StepSettings& step) { step.safety_distance = -1e-6; });
+    expect_refused([=](StepSettings& step) { step.safety_distance = nan; });
+    expect_refused([](StepSettings& step) { step.potential.contact_distance = -1.0; });
+    expect_refused([](StepSettings& step) { step.newton.max_iterations = -5; });
+    expect_refused([](StepSettings& step) { step.quasi_newton.iterations = -5; });
 }
 
-INSTANTIATE_TEST_SUITE_P(Fabrics, NewtonStepperTest,
+INSTANTIATE_TEST_SUITE_P(Fabrics, ReferenceStep,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);

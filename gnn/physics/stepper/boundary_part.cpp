@@ -1,0 +1,64 @@
+#include "gnn/physics/stepper/boundary_part.h"
+
+namespace cloth {
+namespace {
+
+Pose between(const Pose& a, const Pose& b, double s) {
+    Pose pose = Pose::Identity();
+    pose.translation() = (1.0 - s) * a.translation() + s * b.translation();
+    pose.linear() =
+        Eigen::Quaterniond(a.linear()).slerp(s, Eigen::Quaterniond(b.linear())).toRotationMatrix();
+    return pose;
+}
+
+/// The part [s0, s1] of an obstacle's motion.
+void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
+    const auto vertices = [&](double s, Points& x) {
+        if (s <= 0.0)
+            x = whole.x0;
+        else if (s >= 1.0)
+            x = whole.x1;
+        else
+            x = (1.0 - s) * whole.x0 + s * whole.x1;
+    };
+    part.shape = whole.shape;
+    part.faces = whole.faces;
+    part.limbs = whole.limbs;
+    part.half_extents = whole.half_extents;
+    part.radius = whole.radius;
+    part.friction = whole.friction;
+    if (whole.shape == ObstacleShape::mesh && whole.x0.rows() == whole.x1.rows()) {
+        vertices(s0, part.x0);
+        vertices(s1, part.x1);
+    }
+    part.pose0 = s0 <= 0.0 ? whole.pose0 : between(whole.pose0, whole.pose1, s0);
+    part.pose1 = s1 >= 1.0 ? whole.pose1 : between(whole.pose0, whole.pose1, s1);
+}
+
+}  // namespace
+
+void BoundaryPart::begin(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                         int count) {
+    m_whole = &boundary;
+    m_count = count;
+    m_part.gravity = boundary.gravity;
+    m_part.accelerations = boundary.accelerations;
+    m_part.ignored_limbs = boundary.ignored_limbs;
+    m_part.obstacles.resize(boundary.obstacles.size());
+    m_pins_before.resize(boundary.pin_targets.rows(), 3);
+    for (size_t p = 0; p < garment.pins().size(); ++p)
+        m_pins_before.row(static_cast<Eigen::Index>(p)) = state.x.row(garment.pins()[p]);
+}
+
+const Boundary& BoundaryPart::take(int k) {
+    const double s0 = static_cast<double>(k) / m_count;
+    const double s1 = static_cast<double>(k + 1) / m_count;
+    for (size_t i = 0; i < m_part.obstacles.size(); ++i)
+        cut(m_whole->obstacles[i], s0, s1, m_part.obstacles[i]);
+    m_part.pin_targets = k + 1 == m_count
+                             ? m_whole->pin_targets
+                             : Points((1.0 - s1) * m_pins_before + s1 * m_whole->pin_targets);
+    return m_part;
+}
+
+}  // namespace cloth

@@ -1,0 +1,183 @@
+#include "gnn/physics/stepper/cloth_stepper.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "data/core/check_range.h"
+#include "gnn/physics/stepper/guess.h"
+#include "gnn/physics/stepper/relative_motion.h"
+#include "gnn/physics/stepper/stopwatch.h"
+
+namespace cloth {
+namespace {
+
+void check(const GuardSettings& settings) {
+    check_range("GuardSettings.max_motion", settings.max_motion, 0.01, 1.0);
+    check_range("GuardSettings.max_entry", settings.max_entry, 1e-3, 0.1);
+    check_range("GuardSettings.fine_motion", settings.fine_motion, 0.01, 1.0);
+    check_range("GuardSettings.watch_motion", settings.watch_motion, 5e-3, 1.0);
+    check_range("GuardSettings.tunnelling_motion", settings.tunnelling_motion, 1e-3, 1.0);
+    check_range("GuardSettings.max_substeps", settings.max_substeps, 1, 64);
+    check(settings.iterations, "GuardSettings.iterations");
+}
+
+void add(const StepReport& part, StepReport& report) {
+    report.finite = part.finite;
+    report.iterations += part.iterations;
+    report.residual = part.residual;
+    report.gain = part.gain;
+    report.converged = part.converged && report.converged;
+    report.max_penetration = part.max_penetration;
+    report.max_entry = std::max(report.max_entry, part.max_entry);
+    if (part.tunnelled)
+        report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
+    report.tangles = part.tangles;
+    report.first_tangle = part.first_tangle;
+    report.times.proximity += part.times.proximity;
+    report.times.features += part.times.features;
+    report.times.solve += part.times.solve;
+    report.times.contact += part.times.contact;
+}
+
+}  // namespace
+
+ClothStepper::ClothStepper(const Garment& garment, const ClothStepperSettings& settings,
+                           std::shared_ptr<StepStart> start)
+    : ClothStepper(garment, std::make_unique<StepSolver>(garment, settings.step, std::move(start)),
+                   settings.guard, settings.substeps) {
+}
+
+ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
+                           const GuardSettings& guard, int substeps)
+    : m_garment(&garment),
+      m_guard(guard),
+      m_substeps(substeps),
+      m_solver(std::move(solver)),
+      m_detector(garment) {
+    if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
+    check(m_guard);
+    check_range("ClothStepperSettings.substeps", substeps, 1, 64);
+    if (fixed_dt() > 0.0) prepare(fixed_dt());
+}
+
+std::string ClothStepper::name() const {
+    return m_solver->name() + (m_substeps > 1 ? "x" + std::to_string(m_substeps) : "");
+}
+
+void ClothStepper::prepare(double dt) {
+    m_solver->prepare(dt / m_substeps);
+    for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2)
+        m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
+}
+
+bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
+    m_solver->internal_forces(x, forces);
+    return true;
+}
+
+StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
+    if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
+    if (!m_guard.limbs) return guarded_step(boundary, dt, state);
+    return guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+}
+
+/// A step that turns out to be too coarse is taken once more, as finely as its report asks for.
+StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, ClothState& state) {
+    const double motion = is_watched() ? relative_motion(*m_garment, boundary, dt, state) : 0.0;
+    const int foreseen = std::max(m_substeps, substeps_for(motion, m_guard.max_motion));
+    const bool may_repeat = foreseen < m_guard.max_substeps;
+    if (may_repeat) m_before = state;
+    StepReport report = take(foreseen, boundary, dt, motion, state);
+    Lag lag = std::exchange(m_next_lag, {});
+    const int finer = may_repeat ? substeps_after(report, motion) : foreseen;
+    if (finer > foreseen) {
+        const StepReport repeated = take(finer, boundary, dt, motion, m_before);
+        if (repeated.finite || !report.finite) {
+            if (repeated.finite) std::swap(state, m_before);
+            report = repeated;
+            std::swap(lag, m_next_lag);
+        }
+    }  // better the first step than none
+    if (report.finite && report.substeps > 1) std::swap(m_lag, lag);
+    return report;
+}
+
+StepReport ClothStepper::take(int substeps, const Boundary& boundary, double dt, double motion,
+                              ClothState& state) {
+    return substeps == 1 ? take_whole(boundary, dt, motion, state)
+                         : take_parts(substeps, boundary, dt, state);
+}
+
+StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double motion,
+                                    ClothState& state) {
+    const bool search_it = is_watched() && motion > m_guard.watch_motion;
+    if (search_it) m_x_before = state.x;
+    StepReport report = m_solver->whole(boundary, dt, state);
+    if (search_it && report.finite) search(boundary, m_x_before, state.x, report);
+    return report;
+}
+
+StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, double dt,
+                                    ClothState& state) {
+    StepReport report;
+    report.converged = true;
+    report.substeps = substeps;
+    m_state = state;
+    if (m_lag.substeps == substeps && same_points(m_lag.x, state.x)) m_state.v += m_lag.v;
+    // What is cut because the settings say so obeys the settings' limits.
+    const IterationLimits& own = m_solver->settings().quasi_newton;
+    const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
+    m_part.begin(*m_garment, state, boundary, substeps);
+    for (int k = 0; k < substeps; ++k) {
+        add(take_part(m_part.take(k), dt / substeps, limits), report);
+        if (!report.finite) return report;
+    }
+    m_state.time = state.time + dt;
+    m_next_lag.substeps = substeps;
+    m_next_lag.x = m_state.x;
+    m_next_lag.v = m_state.v;
+    m_state.v = (m_state.x - state.x) / dt;
+    m_next_lag.v -= m_state.v;
+    std::swap(state, m_state);
+    return report;
+}
+
+/// Advances m_state.
+StepReport ClothStepper::take_part(const Boundary& part, double dt, const IterationLimits& limits) {
+    const bool search_it =
+        is_watched() && relative_motion(*m_garment, part, dt, m_state) > m_guard.watch_motion;
+    if (search_it) m_x_before = m_state.x;
+    StepReport report = m_solver->part(part, dt, limits, m_state);
+    if (search_it && report.finite) search(part, m_x_before, m_state.x, report);
+    return report;
+}
+
+void ClothStepper::search(const Boundary& boundary, const Points& x0, const Points& x1,
+                          StepReport& report) {
+    Stopwatch watch;
+    m_detector.find(boundary, x0, x1, 0);
+    const double thinnest = m_detector.thinnest();
+    if (std::isfinite(thinnest)) report.tunnelled = thinnest;
+    report.times.contact += watch.lap();
+}
+
+/// How finely a step of this motion should have been taken.
+int ClothStepper::substeps_after(const StepReport& report, double motion) const {
+    int substeps = report.finite ? 1 : 2;
+    if (report.max_entry > m_guard.max_entry)
+        substeps = std::max(substeps, substeps_for(motion, m_guard.fine_motion));
+    if (report.tunnelled)
+        substeps = std::max(substeps, substeps_for(motion, std::min(m_guard.tunnelling_motion,
+                                                                    0.5 * *report.tunnelled)));
+    return substeps;
+}
+
+/// Powers of two, so that few matrices are factorised.
+int ClothStepper::substeps_for(double motion, double most) const {
+    int substeps = 1;
+    while (substeps * most < motion && substeps < m_guard.max_substeps) substeps *= 2;
+    return std::min(substeps, m_guard.max_substeps);
+}
+
+}  // namespace cloth

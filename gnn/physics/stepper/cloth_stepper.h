@@ -1,0 +1,134 @@
+#pragma once
+
+#include <memory>
+
+#include "collision/ccd/tunnelling.h"
+#include "collision/proximity/limb_overlap.h"
+#include "gnn/physics/stepper/boundary_part.h"
+#include "gnn/physics/stepper/step_solver.h"
+
+namespace cloth {
+
+/// When a step is cut into parts.
+struct GuardSettings {
+    bool limbs = true;  ///< limbs of a body that pass through each other are told apart, see
+                        ///< LimbOverlap
+    /// Steps in which an obstacle near the garment, or a pin, moves farther than this (m, relative
+    /// to the garment) are cut, 0.01 to 1. Contacts are found at the start of a step within the
+    /// proximity's radius: what comes from farther away would pass through.
+    double max_motion = 0.1;
+    /// Steps that leave a vertex deeper inside an obstacle than this (m, before contact projection)
+    /// went past a surface: they are taken again in sub-steps of `fine_motion`, 1e-3 to 0.1.
+    double max_entry = 0.01;
+    double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
+    /// Steps of more motion than this (m, 5e-3 to 1) are searched for solids that the garment went
+    /// through on the way, see TunnellingDetector. They are taken again in sub-steps of
+    /// `tunnelling_motion`, or of half as much motion as the solid is thick: in these the nearest
+    /// surface is the one that the cloth came from.
+    double watch_motion = 0.02;
+    double tunnelling_motion = 0.01;  ///< (m), 1e-3 to 1
+    int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
+    IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part
+
+    /// Every step is taken as it is.
+    static GuardSettings off() {
+        GuardSettings settings;
+        settings.limbs = false;
+        settings.max_substeps = 1;
+        return settings;
+    }
+};
+
+struct ClothStepperSettings {
+    StepSettings step;
+    int substeps = 1;  ///< equal parts of every step at least, 1 to 64: smaller steps damp less and
+                       ///< are nearer to the equations of motion. Parts do not use the start
+    GuardSettings guard;
+
+    /// Quasi-Newton steps that are taken as they are, for measurements.
+    static ClothStepperSettings plain(const IterationLimits& limits = {}) {
+        ClothStepperSettings settings;
+        settings.step.quasi_newton = limits;
+        settings.guard = GuardSettings::off();
+        return settings;
+    }
+    /// The converged step, taken as it is: what reports call the reference.
+    static ClothStepperSettings reference(const NewtonSettings& newton = {}) {
+        ClothStepperSettings settings;
+        settings.step.minimiser = MinimiserKind::newton;
+        settings.step.newton = newton;
+        settings.guard = GuardSettings::off();
+        return settings;
+    }
+};
+
+/// A garment as it should be simulated: steps of a StepSolver where one can be trusted, cut into
+/// parts where not: where obstacles or pins move too fast, where the step failed, and where it went
+/// past a surface or through a solid, such as a hand that swings through a hem. A jump of the body
+/// by metres (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
+/// Limbs of a body that pass through each other are handled as LimbOverlap says.
+///
+///     ClothStepper stepper(garment);                    // physics alone
+///     stepper.prepare(1.0 / 60.0);                      // optional: nothing is built in a frame
+///     StepReport report = stepper.step(boundary, 1.0 / 60.0, state);
+///
+/// make_cloth() (gnn/model/make_cloth.h) also takes a network.
+///
+/// ClothState has the mean velocity over a step; the velocity at the end of the last part, from
+/// which the next step goes on, differs from it by a lag. A state whose positions are those that
+/// were returned last, by a step of as many parts, goes on with its velocity (which others may have
+/// changed) and that lag, any other state with its velocity alone.
+class ClothStepper : public Stepper {
+ public:
+    /// Keeps a reference to `garment`.
+    /// @param start  of whole steps; null: the projected extrapolation
+    /// @throws ArgumentError if a setting is out of range
+    explicit ClothStepper(const Garment& garment, const ClothStepperSettings& settings = {},
+                          std::shared_ptr<StepStart> start = nullptr);
+    /// With a solver of its own. @throws ArgumentError also if it is null
+    ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
+                 const GuardSettings& guard = {}, int substeps = 1);
+
+    /// The solver's; of steps that are always cut "xN" follows.
+    std::string name() const override;
+    double fixed_dt() const override { return m_solver->fixed_dt(); }
+    /// Factorises for steps of this length and for their parts.
+    void prepare(double dt) override;
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool internal_forces(const Points& x, Points& forces) const override;
+    const std::vector<LimbSet>& ignored_limbs() const override { return m_limbs.ignored(); }
+
+    const StepSolver& solver() const { return *m_solver; }
+
+ private:
+    struct Lag {
+        int substeps = 0;
+        Points x;  ///< |V| x 3 (m): what was returned last
+        Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
+    };
+
+    StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
+    StepReport take(int substeps, const Boundary& boundary, double dt, double motion,
+                    ClothState& state);
+    StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
+    StepReport take_parts(int substeps, const Boundary& boundary, double dt, ClothState& state);
+    StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits);
+    void search(const Boundary& boundary, const Points& x0, const Points& x1, StepReport& report);
+    bool is_watched() const { return m_guard.max_substeps > 1; }
+    int substeps_for(double motion, double most) const;
+    int substeps_after(const StepReport& report, double motion) const;
+
+    const Garment* m_garment;
+    GuardSettings m_guard;
+    int m_substeps;
+    std::unique_ptr<StepSolver> m_solver;
+    LimbOverlap m_limbs;
+    TunnellingDetector m_detector;
+    BoundaryPart m_part;
+    ClothState m_before;    ///< from which a step is taken again
+    ClothState m_state;     ///< during a step of parts
+    Points m_x_before;      ///< |V| x 3 (m): of a step that is searched
+    Lag m_lag, m_next_lag;  ///< of the last step; of the one that is being taken
+};
+
+}  // namespace cloth

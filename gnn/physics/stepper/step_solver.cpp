@@ -1,0 +1,190 @@
+#include "gnn/physics/stepper/step_solver.h"
+
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "data/core/check_range.h"
+#include "gnn/physics/stepper/guess.h"
+#include "gnn/physics/stepper/stopwatch.h"
+
+namespace cloth {
+namespace {
+
+const StepSettings& checked(const StepSettings& settings) {
+    check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
+    check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
+    return settings;
+}
+
+/// "" of limits that control the error.
+std::string suffix_of(const IterationLimits& limits, char mark) {
+    if (limits.least_gain > 0.0) return "";
+    char text[32];
+    if (limits.tolerance > 0.0)
+        std::snprintf(text, sizeof text, "%c%.0e", mark, limits.tolerance);
+    else
+        std::snprintf(text, sizeof text, "%c%d", mark, limits.iterations);
+    return text;
+}
+
+}  // namespace
+
+StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
+                       std::shared_ptr<StepStart> start)
+    : m_garment(&garment),
+      m_settings(checked(settings)),
+      m_start(std::move(start)),
+      m_potential(garment, settings.potential),
+      m_time(settings.potential.integrator),
+      m_quasi_newton(garment, settings.quasi_newton),
+      m_newton(garment, settings.newton),
+      m_proximity(settings.proximity),
+      m_ridges(garment),
+      m_projection(garment),
+      m_self_contact(garment, settings.potential.self_contact) {
+}
+
+std::string StepSolver::name() const {
+    if (m_start) return m_start->name() + suffix_of(m_settings.quasi_newton, '+');
+    if (m_settings.minimiser == MinimiserKind::newton) return "reference";
+    const IterationLimits& limits = m_settings.quasi_newton;
+    std::string name = "quasi-newton";
+    if (limits.tolerance == 0.0) name += suffix_of(limits, '-');
+    if (m_settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
+    return name;
+}
+
+void StepSolver::prepare(double dt) {
+    if (m_settings.minimiser == MinimiserKind::newton || !(dt > 0.0)) return;
+    m_quasi_newton.prepare(*m_garment, dt);
+    if (m_settings.potential.integrator == Integrator::bdf2)
+        m_quasi_newton.prepare(*m_garment, bdf2_inertial_dt(dt));
+}
+
+StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
+    return solve(boundary, dt, m_start.get(), m_settings.quasi_newton, state);
+}
+
+StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
+                            ClothState& state) {
+    return solve(boundary, dt, nullptr, limits, state);
+}
+
+StepReport StepSolver::solve(const Boundary& boundary, double dt, StepStart* start,
+                             const IterationLimits& limits, ClothState& state) {
+    StepReport report;
+    Stopwatch watch;
+    for (int round = 0; round <= m_settings.contact_updates; ++round) {
+        const bool first = round == 0;
+        find_contacts(boundary, first ? state.x : m_x, first ? StepEnd::start : StepEnd::end);
+        report.times.proximity += watch.lap();
+        begin(boundary, dt, state);
+        const PotentialValue* at_x =
+            first ? choose_start(boundary, start, limits, dt, state, report) : nullptr;
+        const bool as_predicted = start && limits.iterations == 0 && !at_x;
+        if (!as_predicted && !descend(boundary, limits, at_x, state, report))
+            return StepReport::failed();
+        report.times.solve += watch.lap();
+        if (boundary.obstacles.empty()) break;
+    }
+    report.times.solve -= report.times.features;
+    project(boundary, state, report);
+    report.times.contact = watch.lap();
+    return accept(dt, state) ? report : StepReport::failed();
+}
+
+void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {
+    if (boundary.obstacles.empty()) {
+        m_contacts.clear();
+        return;
+    }
+    m_proximity.query(x, boundary, m_contacts, end);
+    m_ridges.find(m_proximity, boundary, x, m_contacts, end);
+}
+
+void StepSolver::begin(const Boundary& boundary, double dt, const ClothState& state) {
+    const InertialStep* inertia =
+        m_time.begin_step(state, m_contacts, m_potential.settings().contact_distance, dt);
+    m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
+}
+
+/// Leaves where to start in m_x; returns E and its gradient there if they are known.
+const PotentialValue* StepSolver::choose_start(const Boundary& boundary, StepStart* start,
+                                               const IterationLimits& limits, double dt,
+                                               const ClothState& state, StepReport& report) {
+    starting_guess(*m_garment, state, boundary, m_contacts, dt,
+                   m_potential.settings().contact_distance, m_guess);
+    m_potential.separate_self_contact(m_guess);
+    m_x = m_guess;
+    if (!start) return nullptr;
+    StageTimes times;
+    const bool guess_known =
+        start->predict(state, boundary, m_potential, m_guess, m_at_guess, m_started, times);
+    report.times.features = times.features;
+    report.prediction_rejected = m_started.rows() != m_guess.rows() || !m_started.allFinite();
+    if (report.prediction_rejected)
+        m_started = m_guess;
+    else
+        place_pins(*m_garment, boundary, m_started);
+    const bool refined = limits.iterations > 0 || m_settings.minimiser == MinimiserKind::newton;
+    const PotentialValue* at_x =
+        refined ? lower_of_guess_and_prediction(guess_known, report) : nullptr;
+    m_x = m_started;
+    return at_x;
+}
+
+const PotentialValue* StepSolver::lower_of_guess_and_prediction(bool guess_known,
+                                                                StepReport& report) {
+    if (!guess_known) m_at_guess.energy = m_potential.value_gradient(m_guess, m_at_guess.gradient);
+    if (report.prediction_rejected) return &m_at_guess;
+    m_at_prediction.energy = m_potential.value_gradient(m_started, m_at_prediction.gradient);
+    if (m_at_prediction.energy <= m_at_guess.energy) return &m_at_prediction;
+    report.prediction_rejected = true;
+    m_started = m_guess;
+    return &m_at_guess;
+}
+
+MinimiseReport StepSolver::minimise(const IterationLimits& limits, const PotentialValue* at_x) {
+    if (m_settings.minimiser == MinimiserKind::newton)
+        return m_newton.minimise(m_potential, m_x, at_x);
+    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x);
+}
+
+/// From m_x to the minimum, or as far as the limits allow. False: nothing is finite.
+bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits,
+                         const PotentialValue* at_x, const ClothState& state, StepReport& report) {
+    MinimiseReport minimum = minimise(limits, at_x);
+    if (!minimum.finite) {
+        m_x = state.x;
+        place_pins(*m_garment, boundary, m_x);
+        minimum = minimise(limits, nullptr);
+    }
+    report.iterations += minimum.iterations;
+    report.residual = minimum.residual;
+    report.gain = minimum.gain;
+    report.converged = minimum.converged;
+    return minimum.finite;
+}
+
+void StepSolver::project(const Boundary& boundary, const ClothState& state, StepReport& report) {
+    place_pins(*m_garment, boundary, m_x);
+    const double distance = m_settings.safety_distance;
+    const ResolveReport resolved =
+        m_projection.resolve(m_proximity, boundary, distance, m_x, m_contacts);
+    report.max_penetration = resolved.deepest_after();
+    report.max_entry = resolved.max_depth_before;
+    m_self_contact.finish(state.x, m_proximity, boundary, distance, m_x, m_contacts, report);
+}
+
+bool StepSolver::accept(double dt, ClothState& state) {
+    m_v = (m_x - state.x) / dt;
+    if (!m_x.allFinite() || !m_v.allFinite()) return false;  // very short steps overflow
+    m_time.end_step(state, m_x, m_v, dt);
+    state.x = m_x;
+    state.v = m_v;
+    state.time += dt;
+    return true;
+}
+
+}  // namespace cloth

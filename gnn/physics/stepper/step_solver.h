@@ -1,0 +1,112 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "collision/proximity/ridge_contacts.h"
+#include "collision/response/contact_projection.h"
+#include "gnn/physics/energy/time_integration.h"
+#include "gnn/physics/solver/newton.h"
+#include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/self_contact_projection.h"
+#include "gnn/physics/stepper/step_start.h"
+
+namespace cloth {
+
+/// quasi_newton: what simulations use. newton: converged, the reference of reports.
+enum class MinimiserKind { quasi_newton, newton };
+
+struct StepSettings {
+    MinimiserKind minimiser = MinimiserKind::quasi_newton;
+    QuasiNewtonSettings quasi_newton = IterationLimits::controlled();
+    NewtonSettings newton;
+    PotentialSettings potential;
+    ProximitySettings proximity;
+    /// How often the nearest surface points are found anew for the minimum and the minimisation
+    /// goes on with them, 0 to 10. 0 keeps those that were nearest at t; more follow cloth that
+    /// slides past the end of a face.
+    int contact_updates = 0;
+    /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
+    /// contact, are moved to this distance, 0 to 1e-3.
+    double safety_distance = 5e-4;
+};
+
+/// One implicit step of a garment: nearest surface points, incremental potential, a start
+/// (projected extrapolation or network), a minimiser, and contact projection, which leaves nothing
+/// inside an obstacle. ClothStepper makes simulations of it.
+///
+/// From a start that is not finite, or of higher energy than the guess, the step starts at the
+/// guess; from a guess of which the energy is not finite, at x_t. Without iterations
+/// (IterationLimits::none()) a finite start is taken as it is.
+///
+/// Takes any time step; what depends on it is kept for the last ones. Serves one thread at a time.
+class StepSolver {
+ public:
+    /// Keeps a reference to `garment`.
+    /// @param start  of whole steps; null: the guess
+    /// @throws ArgumentError if a setting is out of range
+    StepSolver(const Garment& garment, const StepSettings& settings,
+               std::shared_ptr<StepStart> start = nullptr);
+    virtual ~StepSolver() = default;
+
+    /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with
+    /// "-bdf2" at the end if that integrates; "reference" of Newton's method; with a start its
+    /// name, and "+K" with exactly K iterations, "+1e-02" with a tolerance.
+    std::string name() const;
+    double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
+    const StepSettings& settings() const { return m_settings; }
+
+    /// Builds what steps of this length (s) need. Never throws.
+    void prepare(double dt);
+    int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
+
+    /// A whole step, from the start that the settings name. The arguments have passed
+    /// is_valid_step(); a step that fails leaves the state as it was.
+    virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
+
+    /// A part of a step that was cut, from the guess. Newton's method keeps its own limits.
+    virtual StepReport part(const Boundary& boundary, double dt, const IterationLimits& limits,
+                            ClothState& state);
+
+    /// See Stepper::internal_forces().
+    void internal_forces(const Points& x, Points& forces) const {
+        m_potential.internal_forces(x, forces);
+    }
+
+    /// Where the last whole step started (|V| x 3, m): the prediction, if there was one.
+    const Points& start() const { return m_started; }
+    const SelfContactProjection& self_contact() const { return m_self_contact; }  ///< last step's
+
+ private:
+    StepReport solve(const Boundary& boundary, double dt, StepStart* start,
+                     const IterationLimits& limits, ClothState& state);
+    void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
+    void begin(const Boundary& boundary, double dt, const ClothState& state);
+    const PotentialValue* choose_start(const Boundary& boundary, StepStart* start,
+                                       const IterationLimits& limits, double dt,
+                                       const ClothState& state, StepReport& report);
+    const PotentialValue* lower_of_guess_and_prediction(bool guess_known, StepReport& report);
+    MinimiseReport minimise(const IterationLimits& limits, const PotentialValue* at_x);
+    bool descend(const Boundary& boundary, const IterationLimits& limits,
+                 const PotentialValue* at_x, const ClothState& state, StepReport& report);
+    void project(const Boundary& boundary, const ClothState& state, StepReport& report);
+    bool accept(double dt, ClothState& state);
+
+    const Garment* m_garment;
+    StepSettings m_settings;
+    std::shared_ptr<StepStart> m_start;
+    IncrementalPotential m_potential;
+    TimeIntegration m_time;
+    QuasiNewton m_quasi_newton;
+    Newton m_newton;
+    Proximity m_proximity;
+    RidgeFinder m_ridges;
+    ContactProjection m_projection;
+    SelfContactProjection m_self_contact;
+    SurfaceContacts m_contacts;
+    PotentialValue m_at_guess, m_at_prediction;
+    Points m_guess, m_started;  ///< |V| x 3 (m)
+    Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
+};
+
+}  // namespace cloth

@@ -1,0 +1,482 @@
+#include "gnn/physics/stepper/cloth_stepper.h"
+
+#include <gtest/gtest.h>
+
+#include "data/authoring/sheet.h"
+#include "data/core/errors.h"
+#include "gnn/physics/stepper/relative_motion.h"
+
+namespace cloth {
+namespace {
+
+constexpr double dt = 1.0 / 30.0;
+
+/// Solvers of which the whole step is a stand-in; parts are the real solver's, or fail.
+class Standing : public StepSolver {
+ public:
+    explicit Standing(const Garment& garment) : StepSolver(garment, {}) {}
+    StepReport part(const Boundary& boundary, double h, const IterationLimits& limits,
+                    ClothState& state) override {
+        return parts_fail ? StepReport::failed() : StepSolver::part(boundary, h, limits, state);
+    }
+    bool parts_fail = false;
+};
+
+class Failing : public Standing {
+ public:
+    using Standing::Standing;
+    StepReport whole(const Boundary&, double, ClothState&) override { return StepReport::failed(); }
+};
+
+/// Says how deep it went past a surface.
+class Entering : public Standing {
+ public:
+    Entering(const Garment& garment, double entry) : Standing(garment), m_entry(entry) {}
+    StepReport whole(const Boundary& boundary, double h, ClothState& state) override {
+        ignored = boundary.ignored_limbs;
+        state.x.array() += 1.0;
+        state.time += h;
+        StepReport report;
+        report.max_entry = m_entry;
+        return report;
+    }
+    std::vector<LimbSet> ignored;
+
+ private:
+    double m_entry;
+};
+
+/// Flies to where it is told, through anything.
+class Flying : public Standing {
+ public:
+    Flying(const Garment& garment, const Vec3& way) : Standing(garment), m_way(way) {}
+    StepReport whole(const Boundary&, double h, ClothState& state) override {
+        state.x.rowwise() += m_way.transpose();
+        state.time += h;
+        return {};
+    }
+
+ private:
+    Vec3 m_way;
+};
+
+ClothStepperSettings plain() {
+    return ClothStepperSettings::plain(IterationLimits::exactly(10));
+}
+
+ClothStepperSettings guarded(const GuardSettings& guard = {}) {
+    ClothStepperSettings settings = plain();
+    settings.guard = guard;
+    return settings;
+}
+
+/// A ball that starts 0.6 m beside the sheet's middle and moves along x.
+Obstacle ball(double from, double to) {
+    Obstacle sphere;
+    sphere.shape = ObstacleShape::sphere;
+    sphere.radius = 0.1;
+    sphere.pose0.translation() = Vec3(from, 0, 0);
+    sphere.pose1.translation() = Vec3(to, 0, 0);
+    return sphere;
+}
+
+class Guard : public ::testing::Test {
+ protected:
+    /// A sheet in the plane x = 0.
+    static TriMesh upright() {
+        TriMesh mesh = make_sheet(0.8, 0.8, 600);
+        for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
+            const Vec3 x = mesh.vertices.row(i);
+            mesh.vertices.row(i) = Vec3(0, x.z(), x.x()).transpose();
+        }
+        return mesh;
+    }
+    const Garment m_garment{"sheet", upright(), Fabric::soft_cotton(), {}};
+    ClothState m_state = ClothState::at_rest(m_garment);
+    Boundary m_boundary = [] {
+        Boundary boundary;
+        boundary.pin_targets.resize(0, 3);
+        boundary.gravity.setZero();
+        return boundary;
+    }();
+};
+
+TEST_F(Guard, AStepThatNeedsNoPartsIsTheSolvers) {
+    m_boundary.obstacles = {ball(-0.15, -0.12)};
+    ClothState alone = m_state;
+    ClothStepper inner(m_garment, plain()), stepper(m_garment, guarded());
+    for (int k = 0; k < 3; ++k) {
+        inner.step(m_boundary, dt, alone);
+        EXPECT_EQ(stepper.step(m_boundary, dt, m_state).substeps, 1);
+        m_boundary.obstacles = {ball(-0.12 + 0.03 * k, -0.09 + 0.03 * k)};
+    }
+    EXPECT_EQ(m_state.x, alone.x);
+    EXPECT_EQ(m_state.v, alone.v);
+}
+
+TEST_F(Guard, AFastBallCarriesTheSheetInsteadOfPassingThrough) {
+    // 12 m/s: 40 cm in a frame
+    m_boundary.obstacles = {ball(-0.3, 0.1)};
+    ClothState alone = m_state;
+    ClothStepper(m_garment, plain()).step(m_boundary, dt, alone);
+    ClothStepper stepper(m_garment, guarded());
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    ASSERT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 4);
+    int behind = 0, behind_alone = 0;
+    for (Eigen::Index i = 0; i < m_state.x.rows(); ++i) {
+        const Vec3 rest = m_garment.rest().vertices.row(i);
+        if (rest.norm() > 0.07) continue;  // was in the ball's way
+        behind += m_state.x(i, 0) < 0.1;
+        behind_alone += alone.x(i, 0) < 0.1;
+    }
+    EXPECT_EQ(behind, 0);
+    EXPECT_GT(behind_alone, 0) << "the scene is no test: one step holds it as well";
+}
+
+TEST_F(Guard, CoMovingObstaclesAreNotFast) {
+    m_state.v.rowwise() = Eigen::RowVector3d(12, 0, 0);
+    m_boundary.obstacles = {ball(-0.15, 0.25)};
+    EXPECT_NEAR(relative_motion(m_garment, m_boundary, dt, m_state), 0.0, 1e-12);
+    m_boundary.obstacles = {ball(5.0, 9.0)};  // fast, but far away
+    EXPECT_EQ(relative_motion(m_garment, m_boundary, dt, m_state), 0.0);
+}
+
+TEST_F(Guard, PinsThatJumpAreCutToo) {
+    const Garment pinned("sheet", m_garment.rest(), Fabric::soft_cotton(), {0, 3});
+    m_boundary.pin_targets.resize(2, 3);
+    for (int p = 0; p < 2; ++p)
+        m_boundary.pin_targets.row(p) =
+            m_state.x.row(pinned.pins()[p]) + Vec3(0.35, 0, 0).transpose();
+    const StepReport report = ClothStepper(pinned, guarded()).step(m_boundary, dt, m_state);
+    ASSERT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 4);
+    EXPECT_EQ(m_state.x.row(0), m_boundary.pin_targets.row(0));
+}
+
+TEST_F(Guard, AFailedStepIsMadeInParts) {
+    ClothStepper stepper(m_garment, std::make_unique<Failing>(m_garment));
+    m_boundary.gravity = Vec3(0, -9.81, 0);
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    ASSERT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 2);
+    EXPECT_LT(m_state.x.col(1).mean(), m_garment.rest().vertices.col(1).mean());
+    EXPECT_DOUBLE_EQ(m_state.time, dt);
+}
+
+TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};  // 7 cm: not too fast by itself
+    ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, 0.02));
+    ClothState by_hand = m_state;
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    ASSERT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 2);
+    ClothStepperSettings halves = ClothStepperSettings::plain(GuardSettings().iterations);
+    halves.substeps = 2;
+    ClothStepper(m_garment, halves).step(m_boundary, dt, by_hand);
+    EXPECT_EQ(m_state.x, by_hand.x);
+    EXPECT_EQ(m_state.v, by_hand.v);
+    EXPECT_DOUBLE_EQ(m_state.time, dt);
+}
+
+TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheSolversAffair) {
+    const Points moved = m_state.x.array() + 1.0;
+    const auto expect_inner = [&](double entry, double motion) {
+        m_boundary.obstacles = {ball(-0.2, -0.2 + motion)};
+        ClothState state = m_state;
+        ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, entry));
+        EXPECT_EQ(stepper.step(m_boundary, dt, state).substeps, 1);
+        EXPECT_EQ(state.x, moved);
+    };
+    expect_inner(0.005, 0.07);
+    expect_inner(0.02, 0.03);
+}
+
+/// A plate of 3 cm that moves along x.
+Obstacle plate(double from, double to) {
+    Obstacle box;
+    box.shape = ObstacleShape::box;
+    box.half_extents = Vec3(0.015, 0.2, 0.2);
+    box.pose0.translation() = Vec3(from, 0, 0);
+    box.pose1.translation() = Vec3(to, 0, 0);
+    return box;
+}
+
+/// The same as a mesh.
+Obstacle as_mesh(const Obstacle& box) {
+    Obstacle mesh;
+    Faces faces(12, 3);
+    faces << 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6,
+        2, 1, 3, 7, 1, 7, 5;
+    mesh.faces = std::make_shared<const Faces>(faces);
+    mesh.x0.resize(8, 3);
+    for (int i = 0; i < 8; ++i)
+        mesh.x0.row(i) =
+            box.half_extents.cwiseProduct(Vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+    mesh.x1 = mesh.x0.rowwise() + box.pose1.translation().transpose();
+    mesh.x0 = mesh.x0.rowwise() + box.pose0.translation().transpose();
+    return mesh;
+}
+
+class Through : public Guard, public ::testing::WithParamInterface<bool> {
+ protected:
+    void place(const Obstacle& box) { m_boundary.obstacles = {GetParam() ? as_mesh(box) : box}; }
+};
+
+TEST_P(Through, AStepThatWentThroughASolidIsTakenAgainInSubsteps) {
+    place(plate(-0.03, 0.029));
+    GuardSettings settings;
+    for (const double motion : {0.01, 0.1}) {
+        settings.tunnelling_motion = motion;
+        ClothStepper stepper(m_garment, std::make_unique<Flying>(m_garment, Vec3(0.005, 0, 0)),
+                             settings);
+        ClothState state = m_state;
+        const StepReport report = stepper.step(m_boundary, dt, state);
+        ASSERT_TRUE(report.finite);
+        EXPECT_EQ(report.substeps, motion < 0.015 ? 8 : 4)
+            << "5.9 cm in parts of at most 1 cm, or half of the plate's 3 cm";
+        EXPECT_FALSE(report.tunnelled);
+        for (Eigen::Index i = 0; i < state.x.rows(); ++i) {
+            const Vec3 rest = m_garment.rest().vertices.row(i);
+            const bool in_its_way = std::max(std::abs(rest.y()), std::abs(rest.z())) < 0.19;
+            EXPECT_TRUE(!in_its_way || state.x(i, 0) > 0.0439) << "vertex " << i;
+        }
+    }
+}
+
+TEST_P(Through, WhereNoPartHelpsTheReportSaysHowThickItWas) {
+    place(plate(-0.03, 0.029));
+    const auto tunnelled = [&](double watch_motion) {
+        auto solver = std::make_unique<Flying>(m_garment, Vec3(0.005, 0, 0));
+        solver->parts_fail = true;
+        GuardSettings settings;
+        settings.watch_motion = watch_motion;
+        ClothState state = m_state;
+        return ClothStepper(m_garment, std::move(solver), settings)
+            .step(m_boundary, dt, state)
+            .tunnelled;
+    };
+    ASSERT_TRUE(tunnelled(0.02));
+    EXPECT_NEAR(*tunnelled(0.02), 0.03, 1e-5);
+    EXPECT_FALSE(tunnelled(0.07)) << "too slow to be searched";
+    place(plate(-0.09, -0.03));
+    EXPECT_FALSE(tunnelled(0.02)) << "stays on its side";
+}
+
+TEST_P(Through, WithoutSubstepsNothingIsWatched) {
+    place(plate(-0.03, 0.029));
+    GuardSettings settings;
+    settings.max_substeps = 1;
+    ClothStepper stepper(m_garment, std::make_unique<Flying>(m_garment, Vec3(0.005, 0, 0)),
+                         settings);
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    EXPECT_FALSE(report.tunnelled);
+    EXPECT_EQ(report.substeps, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
+                         [](const auto& scene) { return scene.param ? "mesh" : "box"; });
+
+TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};
+    const Points moved = m_state.x.array() + 1.0;
+    auto solver = std::make_unique<Entering>(m_garment, 0.02);
+    solver->parts_fail = true;
+    ClothStepper stepper(m_garment, std::move(solver));
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    EXPECT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 1);
+    EXPECT_EQ(m_state.x, moved);
+}
+
+TEST_F(Guard, SteppersSayHowDeepTheyWentPastASurface) {
+    m_boundary.obstacles = {ball(-0.3, -0.05)};  // at t it is out of reach
+    const StepReport report = ClothStepper(m_garment, plain()).step(m_boundary, dt, m_state);
+    EXPECT_GT(report.max_entry, 0.03);
+    EXPECT_LT(report.max_entry, 0.051);
+    EXPECT_LT(report.max_penetration, 1e-3);
+}
+
+TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
+    // two blocks of one body in one place; the sheet is at home on the first
+    Obstacle body;
+    TriMesh block = make_sheet(0.3, 0.3, 100);
+    const Eigen::Index count = block.vertices.rows();
+    Faces faces(2 * block.faces.rows(), 3);
+    faces << block.faces, block.faces.array() + static_cast<int>(count);
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 0);
+    std::fill(limbs->begin() + block.faces.rows(), limbs->end(), 1);
+    body.faces = std::make_shared<const Faces>(faces);
+    body.limbs = limbs;
+    // both face along x; the second 3 cm behind the first
+    body.x0.resize(2 * count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vec3 at = block.vertices.row(i);
+        body.x0.row(i) << -0.01, at.z(), at.x();
+        body.x0.row(count + i) << -0.04, at.z(), at.x();
+    }
+    body.x1 = body.x0;
+    m_boundary.obstacles = {body};
+    auto solver = std::make_unique<Entering>(m_garment, 0.0);
+    const Entering& seen = *solver;
+    ClothStepper stepper(m_garment, std::move(solver));
+    stepper.step(m_boundary, dt, m_state);
+    ASSERT_EQ(seen.ignored.size(), size_t(m_garment.vertex_count()));
+    EXPECT_EQ(seen.ignored, stepper.ignored_limbs());
+    EXPECT_EQ(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)),
+              std::count_if(seen.ignored.begin(), seen.ignored.end(),
+                            [](LimbSet set) { return set != 0; }));
+    EXPECT_GT(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)), 50);
+}
+
+TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
+    ClothStepper stepper(m_garment, guarded());
+    const ClothState before = m_state;
+    EXPECT_FALSE(stepper.step(m_boundary, -1.0, m_state).finite);
+    m_boundary.gravity.x() = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(stepper.step(m_boundary, dt, m_state).finite);
+    EXPECT_EQ(m_state.x, before.x);
+    EXPECT_EQ(m_state.v, before.v);
+}
+
+TEST_F(Guard, NothingIsFactorisedInAFrameThatWasPreparedFor) {
+    for (const Integrator integrator : {Integrator::backward_euler, Integrator::bdf2}) {
+        ClothStepperSettings settings = guarded();
+        settings.step.potential.integrator = integrator;
+        ClothStepper stepper(m_garment, settings);
+        stepper.prepare(dt);
+        const int before = stepper.solver().factorisations();
+        EXPECT_EQ(before, integrator == Integrator::bdf2 ? 10 : 5) << "1, 2, 4, 8 and 16 parts";
+        ClothState state = m_state;
+        for (const double end : {-0.12, 0.1, 0.12, 1.7}) {
+            m_boundary.obstacles = {ball(-0.3, end)};
+            ASSERT_TRUE(stepper.step(m_boundary, dt, state).finite);
+        }
+        EXPECT_EQ(stepper.solver().factorisations(), before);
+    }
+}
+
+TEST_F(Guard, RefusesSettingsOutOfRange) {
+    const auto expect_refused = [&](auto change) {
+        ClothStepperSettings settings;
+        change(settings);
+        EXPECT_THROW(ClothStepper(m_garment, settings), ArgumentError);
+    };
+    const double nan = std::nan("");
+    expect_refused([](ClothStepperSettings& s) { s.guard.max_motion = 0.0; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.max_entry = 0.0; });
+    expect_refused([=](ClothStepperSettings& s) { s.guard.fine_motion = nan; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.watch_motion = 1e-3; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.tunnelling_motion = 0.0; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.max_substeps = 0; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.max_substeps = 65; });
+    expect_refused([](ClothStepperSettings& s) { s.guard.iterations.iterations = -1; });
+    expect_refused([](ClothStepperSettings& s) { s.step.quasi_newton.least_gain = -1.0; });
+    expect_refused([](ClothStepperSettings& s) { s.substeps = 0; });
+    expect_refused([](ClothStepperSettings& s) { s.substeps = 65; });
+    EXPECT_THROW(ClothStepper(m_garment, std::unique_ptr<StepSolver>()), ArgumentError);
+}
+
+class Parts : public ::testing::Test {
+ protected:
+    static ClothStepper cut(const Garment& garment, int substeps, int iterations = 20) {
+        ClothStepperSettings settings =
+            ClothStepperSettings::plain(IterationLimits::exactly(iterations));
+        settings.substeps = substeps;
+        return ClothStepper(garment, settings);
+    }
+    const Garment m_garment{"sheet", make_sheet(0.3, 0.3, 80), Fabric::soft_cotton(), {0, 3}};
+    ClothState m_state = ClothState::at_rest(m_garment);
+    Boundary m_boundary = [this] {
+        Boundary boundary;
+        boundary.pin_targets.resize(2, 3);
+        boundary.pin_targets.row(0) = m_state.x.row(0) + Vec3(0.03, 0, 0).transpose();
+        boundary.pin_targets.row(1) = m_state.x.row(3) + Vec3(0, 0.06, 0).transpose();
+        return boundary;
+    }();
+};
+
+TEST_F(Parts, AreEqualSmallStepsByHand) {
+    ClothStepper stepper = cut(m_garment, 4), inner = cut(m_garment, 1);
+    ClothState by_hand = m_state;
+    const Points from = m_state.x;
+    ASSERT_TRUE(stepper.step(m_boundary, dt, m_state).finite);
+    for (int k = 1; k <= 4; ++k) {
+        Boundary part = m_boundary;
+        if (k < 4)
+            for (int p = 0; p < 2; ++p)
+                part.pin_targets.row(p) = (1 - k / 4.0) * from.row(m_garment.pins()[p]) +
+                                          k / 4.0 * m_boundary.pin_targets.row(p);
+        ASSERT_TRUE(inner.step(part, dt / 4, by_hand).finite);
+    }
+    EXPECT_EQ(m_state.x, by_hand.x);
+    EXPECT_LT((m_state.v - (m_state.x - from) / dt).cwiseAbs().maxCoeff(), 1e-12);
+    // and go on from the last part's velocity
+    ASSERT_TRUE(stepper.step(m_boundary, dt, m_state).finite);
+    for (int k = 1; k <= 4; ++k) ASSERT_TRUE(inner.step(m_boundary, dt / 4, by_hand).finite);
+    EXPECT_LT((m_state.x - by_hand.x).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_DOUBLE_EQ(m_state.time, 2 * dt);
+    EXPECT_EQ(m_state.x.row(3), m_boundary.pin_targets.row(1));
+}
+
+TEST_F(Parts, FallNearerToTheParabola) {
+    const Garment free("sheet", m_garment.rest(), Fabric::soft_cotton());
+    m_boundary.pin_targets.resize(0, 3);
+    double error[2];
+    for (const int substeps : {1, 8}) {
+        ClothState state = ClothState::at_rest(free);
+        ClothStepper stepper = cut(free, substeps);
+        for (int frame = 0; frame < 15; ++frame) stepper.step(m_boundary, dt, state);
+        const double fallen = state.x(7, 1) - free.rest().vertices(7, 1);
+        error[substeps == 8] = std::abs(fallen + 0.5 * 9.81 * 0.25);
+    }
+    // Backward Euler falls too far by g t h / 2.
+    EXPECT_NEAR(error[0], 0.5 * 9.81 * 0.5 * dt, 1e-6);
+    EXPECT_NEAR(error[1], error[0] / 8, 1e-6);
+}
+
+/// Parts that fail from one on.
+class FailingAt : public StepSolver {
+ public:
+    FailingAt(const Garment& garment, int good) : StepSolver(garment, {}), m_good(good) {}
+    StepReport part(const Boundary&, double h, const IterationLimits&, ClothState& state) override {
+        if (m_good-- == 0) return StepReport::failed();
+        state.x.array() += h;
+        StepReport report;
+        report.iterations = 2;
+        report.times.solve = 1.0;
+        return report;
+    }
+
+ private:
+    int m_good;
+};
+
+TEST_F(Parts, AreAddedUpInTheReport) {
+    ClothStepper stepper(m_garment, std::make_unique<FailingAt>(m_garment, 3), GuardSettings::off(),
+                         3);
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    ASSERT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 3);
+    EXPECT_EQ(report.iterations, 6);
+    EXPECT_DOUBLE_EQ(report.times.solve, 3.0);
+}
+
+TEST_F(Parts, AFailureInTheMiddleLeavesTheStateAsItWas) {
+    ClothStepper stepper(m_garment, std::make_unique<FailingAt>(m_garment, 1), GuardSettings::off(),
+                         3);
+    const ClothState before = m_state;
+    EXPECT_FALSE(stepper.step(m_boundary, dt, m_state).finite);
+    EXPECT_EQ(m_state.x, before.x);
+    EXPECT_EQ(m_state.time, before.time);
+}
+
+TEST_F(Parts, AreNamed) {
+    EXPECT_EQ(cut(m_garment, 4, 3).name(), "quasi-newton-3x4");
+    EXPECT_EQ(cut(m_garment, 1, 3).name(), "quasi-newton-3");
+    EXPECT_EQ(ClothStepper(m_garment).name(), "quasi-newton");
+    EXPECT_EQ(ClothStepper(m_garment, ClothStepperSettings::reference()).name(), "reference");
+}
+
+}  // namespace
+}  // namespace cloth
