@@ -49,7 +49,12 @@ struct btGnnSolverStatus {
                                   ///< of their nodes are not finite
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
-    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m)
+    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m);
+                                  ///< limbs that it ignores do not count
+    /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
+    /// through each other there is no room for cloth, see cloth::LimbOverlap.
+    double maxIgnoredDepth = 0.0;
+    int nodesInIgnoredLimbs = 0;  ///< nodes inside such limbs, all cloth together
     cloth::StageTimes times;      ///< of the last world step, all cloth together
     std::vector<btGnnSolverMessage> messages;
 };

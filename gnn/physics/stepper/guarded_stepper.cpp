@@ -57,7 +57,16 @@ StepReport GuardedStepper::step(const Boundary& boundary, double dt, ClothState&
         report.residual = std::numeric_limits<double>::quiet_NaN();
         return report;
     }
-    return guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+    StepReport report = guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+    if (report.finite) report_ignored(state.x, report);
+    return report;
+}
+
+/// What contact leaves alone is no penetration, but nobody should take it for air either.
+void GuardedStepper::report_ignored(const Points& x, StepReport& report) {
+    const IgnoredDepth ignored = m_limbs.measure_ignored(x, m_garment->is_pinned());
+    report.vertices_in_ignored_limbs = ignored.vertices;
+    report.max_ignored_depth = ignored.depth;
 }
 
 /// A step that turns out to be too coarse is taken once more, as finely as its report asks for.

@@ -62,6 +62,7 @@ class GuardedStepper : public Stepper {
 
  private:
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
+    void report_ignored(const Points& x, StepReport& report);
     StepReport take(int substeps, const Boundary& boundary, double dt, ClothState& state);
     int substeps_for(double motion, double most) const;
     int substeps_after(const StepReport& report, double motion) const;

@@ -294,26 +294,29 @@ TEST_F(Guard, SteppersSayHowDeepTheyWentPastASurface) {
     EXPECT_LT(report.max_penetration, 1e-3);
 }
 
-TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
-    // two blocks of one body in one place; the sheet is at home on the first
-    Obstacle body;
-    TriMesh block = make_sheet(0.3, 0.3, 100);
-    const Eigen::Index count = block.vertices.rows();
-    Faces faces(2 * block.faces.rows(), 3);
-    faces << block.faces, block.faces.array() + static_cast<int>(count);
+/// Two squares of one body that face along x, the second 3 cm behind the first: limbs 0 and 1.
+Obstacle two_skins(double width) {
+    const TriMesh square = make_sheet(width, width, 100);
+    const Eigen::Index count = square.vertices.rows();
+    Faces faces(2 * square.faces.rows(), 3);
+    faces << square.faces, square.faces.array() + static_cast<int>(count);
     auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 0);
-    std::fill(limbs->begin() + block.faces.rows(), limbs->end(), 1);
+    std::fill(limbs->begin() + square.faces.rows(), limbs->end(), 1);
+    Obstacle body;
     body.faces = std::make_shared<const Faces>(faces);
     body.limbs = limbs;
-    // both face along x; the second 3 cm behind the first
     body.x0.resize(2 * count, 3);
     for (Eigen::Index i = 0; i < count; ++i) {
-        const Vec3 at = block.vertices.row(i);
+        const Vec3 at = square.vertices.row(i);
         body.x0.row(i) << -0.01, at.z(), at.x();
         body.x0.row(count + i) << -0.04, at.z(), at.x();
     }
     body.x1 = body.x0;
-    m_boundary.obstacles = {body};
+    return body;
+}
+
+TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
+    m_boundary.obstacles = {two_skins(0.3)};  // the sheet is at home on the first
     auto inner = std::make_unique<Entering>(0.0);
     const Entering& seen = *inner;
     GuardedStepper guarded(m_garment, std::move(inner));
@@ -324,6 +327,33 @@ TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
               std::count_if(seen.ignored.begin(), seen.ignored.end(),
                             [](LimbSet set) { return set != 0; }));
     EXPECT_GT(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)), 50);
+}
+
+/// Moves along x, and says nothing.
+class Shifting : public Stepper {
+ public:
+    explicit Shifting(double shift) : m_shift(shift) {}
+    std::string name() const override { return "shifting"; }
+    StepReport step(const Boundary&, double, ClothState& state) override {
+        state.x.col(0).array() += m_shift;
+        return {};
+    }
+
+ private:
+    double m_shift;
+};
+
+TEST_F(Guard, TellsHowDeepTheGarmentIsInLimbsThatItIgnores) {
+    m_boundary.obstacles = {two_skins(1.2)};
+    GuardedStepper guarded(m_garment, std::make_unique<Shifting>(-0.06));
+    const StepReport report = guarded.step(m_boundary, dt, m_state);
+    ASSERT_EQ(guarded.last_substeps(), 1);
+    EXPECT_EQ(report.vertices_in_ignored_limbs, m_garment.vertex_count());
+    EXPECT_NEAR(report.max_ignored_depth, 0.02, 1e-9);
+
+    m_state = ClothState::at_rest(m_garment);
+    GuardedStepper clear(m_garment, std::make_unique<Shifting>(-0.03));
+    EXPECT_EQ(clear.step(m_boundary, dt, m_state).vertices_in_ignored_limbs, 0);
 }
 
 TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
