@@ -63,10 +63,10 @@ struct btGnnSolverStatus {
 /// to the world in place of Bullet's own solver:
 ///
 ///     btGnnSoftBodySolver solver([](const cloth::Garment& garment) {
-///         return std::make_unique<cloth::QuasiNewtonStepper>(garment);
+///         return cloth::make_physics_cloth(garment);
 ///     });
 ///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
-///     world.addSoftBody(cloth);
+///     world.addSoftBody(shirt);
 ///
 /// - Cloth is a soft body with faces and without tetrahedra, clusters, joints, pressure, volume
 ///   conservation and pose matching. All other soft bodies, and cloth that cannot be a garment, are
@@ -74,8 +74,7 @@ struct btGnnSolverStatus {
 /// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
 ///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
 /// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
-/// what
-///   contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
+///   what contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
 ///   bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
