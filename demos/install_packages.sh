@@ -16,6 +16,7 @@ if [ "${CLOTH_WITH_TORCH:-1}" != 0 ]; then
   # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
   packages+=(libtorch-dev libopenblas0)
 fi
+[ "${CLOTH_WITH_CHECKS:-0}" = 0 ] || packages+=(clang-14 clang-format-14 clang-tidy-14 libomp-14-dev gcovr)
 
 missing=()
 for package in "${packages[@]}"; do
