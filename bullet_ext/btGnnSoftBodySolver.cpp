@@ -234,7 +234,8 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_obstacles.beginStep(static_cast<double>(solverdt));
     m_status.clothBodies = m_status.bulletBodies = 0;
     m_status.sleepingBodies = m_status.frozenBodies = 0;
-    m_status.maxPenetration = 0.0;
+    m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
+    m_status.nodesInIgnoredLimbs = 0;
     m_status.times = {};
     for (int i = 0; i < m_softBodySet.size(); ++i) {
         btSoftBody& body = *m_softBodySet[i];
@@ -265,6 +266,8 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
         const cloth::StepReport& report = entry.step->lastReport();
         m_status.maxPenetration = std::max(m_status.maxPenetration, report.max_penetration);
         m_status.cutSteps += report.substeps > 1;
+        m_status.maxIgnoredDepth = std::max(m_status.maxIgnoredDepth, report.max_ignored_depth);
+        m_status.nodesInIgnoredLimbs += report.vertices_in_ignored_limbs;
         m_status.times.proximity += report.times.proximity;
         m_status.times.features += report.times.features;
         m_status.times.solve += report.times.solve;

@@ -50,7 +50,12 @@ struct btGnnSolverStatus {
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
     long cutSteps = 0;            ///< those that were taken in parts, see cloth::ClothStepper
-    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m)
+    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m);
+                                  ///< limbs that it ignores do not count
+    /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
+    /// through each other there is no room for cloth, see cloth::LimbOverlap.
+    double maxIgnoredDepth = 0.0;
+    int nodesInIgnoredLimbs = 0;  ///< nodes inside such limbs, all cloth together
     cloth::StageTimes times;      ///< of the last world step, all cloth together
     std::vector<btGnnSolverMessage> messages;
 };
@@ -59,10 +64,10 @@ struct btGnnSolverStatus {
 /// to the world in place of Bullet's own solver:
 ///
 ///     btGnnSoftBodySolver solver([](const cloth::Garment& garment) {
-///         return cloth::make_cloth(garment);  // gnn/model/make_cloth.h
+///         return cloth::make_cloth(garment);
 ///     });
 ///     btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
-///     world.addSoftBody(cloth);
+///     world.addSoftBody(shirt);
 ///
 /// - Cloth is a soft body with faces and without tetrahedra, clusters, joints, pressure, volume
 ///   conservation and pose matching. All other soft bodies, and cloth that cannot be a garment, are
@@ -70,8 +75,7 @@ struct btGnnSolverStatus {
 /// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
 ///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
 /// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
-/// what
-///   contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
+///   what contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
 ///   bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale

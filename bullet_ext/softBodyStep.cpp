@@ -233,7 +233,10 @@ bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
     ClothState to = from;
     m_report = m_stepper->step(boundary, m_cloth_step.length, to);
     m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
-    m_cloth_step.to = m_report.finite ? std::move(to) : from;
+    if (m_report.finite)
+        m_cloth_step.to = std::move(to);
+    else
+        m_cloth_step.to = from;
     m_cloth_step.to.time = from.time + m_cloth_step.length;
     if (m_report.finite)
         m_reactions.collect(

@@ -3,6 +3,7 @@
 # the network, when they are there already. Needs root or sudo only when something is missing.
 #   demos/install_packages.sh          everything
 #   demos/install_packages.sh notorch  all but LibTorch, which training needs
+#   demos/install_packages.sh checks   as notorch, and the tools of .ci/run: format, lint, ThreadSanitizer
 #   demos/install_packages.sh demo     what demos/run.sh builds: the runtime, pictures and videos
 set -euo pipefail
 
@@ -13,14 +14,16 @@ packages=(
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
 )
 tests=(libcgal-dev libgtest-dev libbenchmark-dev)
+checks=(clang-14 clang-format-14 clang-tidy-14 libomp-14-dev gcovr)
 # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
 training=(libtorch-dev libopenblas0)
 case "${1:-all}" in
   demo) ;;
   notorch) packages+=("${tests[@]}") ;;
+  checks) packages+=("${tests[@]}" "${checks[@]}") ;;
   all) packages+=("${tests[@]}" "${training[@]}") ;;
   *)
-    echo "usage: demos/install_packages.sh [all|notorch|demo]" >&2
+    echo "usage: demos/install_packages.sh [all|notorch|checks|demo]" >&2
     exit 2
     ;;
 esac

@@ -39,6 +39,9 @@ struct StepReport {
     /// How thick the thinnest obstacle is that the garment went through on the way (m), see
     /// TunnellingDetector; none: nothing was found, or it was not searched for.
     std::optional<double> tunnelled;
+    int vertices_in_ignored_limbs = 0;  ///< vertices inside a limb that they ignore, see
+                                        ///< LimbOverlap; max_penetration does not count them
+    double max_ignored_depth = 0.0;     ///< how deep the deepest of them is inside (m)
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only
     Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)

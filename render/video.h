@@ -17,7 +17,7 @@ struct VideoSettings {
 /// the same version of the encoder.
 ///
 ///     VideoWriter video("comparison.mp4", 1280, 720);
-///     for (...) video.add(image);
+///     for (const Image& image : images) video.add(image);
 ///     video.close();
 ///
 /// The file appears at close(); without it (an exception, say) nothing is left behind.

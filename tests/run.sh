@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds, runs every test. Quick the second time.
-#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch
+#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch;
+#                           tsan: the tests with several threads; coverage: prints the share of lines
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # compiled objects are found again in another checkout
@@ -9,6 +10,7 @@ preset="${1:-release}"
 
 case "$preset" in
   asan | notorch) demos/install_packages.sh notorch ;;
+  tsan | coverage) demos/install_packages.sh checks ;;
   *) demos/install_packages.sh ;;
 esac
 
@@ -17,10 +19,33 @@ cmake --preset "$preset" -DCMAKE_CXX_COMPILER_LAUNCHER=ccache >/dev/null
 cmake --build --preset "$preset"
 
 echo "== tests: $preset"
-labels=()
-if [ "$preset" = asan ]; then
-  labels=(-L unit)
-  # LibTorch-free, but third-party libraries keep caches for life
-  export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
+selection=()
+jobs="$(nproc)"
+case "$preset" in
+  asan)
+    selection=(-L unit)
+    # LibTorch-free, but third-party libraries keep caches for life
+    export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
+    ;;
+  coverage)
+    selection=(-L unit -LE slow)
+    find build/coverage -name '*.gcda' -delete
+    ;;
+  tsan)
+    selection=(-R Thread)
+    # Archer tells ThreadSanitizer where OpenMP's threads wait for each other; the runtime itself and
+    # other libraries are not instrumented.
+    export OMP_TOOL_LIBRARIES=/usr/lib/llvm-14/lib/libarcher.so
+    export TSAN_OPTIONS="${TSAN_OPTIONS:-ignore_noninstrumented_modules=1}"
+    jobs=1  # a thread that gets no core before the work is done cannot race
+    tests/tsan_sees_races.sh
+    ;;
+esac
+ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$jobs" \
+  "${selection[@]}"
+
+if [ "$preset" = coverage ]; then
+  echo "== lines that the tests ran"
+  gcovr --root . --filter '(bullet_ext|collision|data|gnn|render)/' --print-summary build/coverage |
+    tail -n 6
 fi
-ctest --test-dir "build/$preset" --output-on-failure --parallel "$(nproc)" "${labels[@]}"

@@ -15,7 +15,7 @@ bool first_touch(const Vec3& p0, const Vec3& p1, const std::array<Vec3, 3>& star
                  const std::array<Vec3, 3>& end, double& time) {
     // FCL's thresholds are absolute (a point counts as inside up to 1e-5 beyond an edge): it is
     // given triangles of the order of 1.
-    const Vec3 origin = start[0];
+    const Vec3& origin = start[0];
     const double size = std::sqrt(std::max((start[1] - origin).cross(start[2] - origin).norm(),
                                            (end[1] - end[0]).cross(end[2] - end[0]).norm()));
     if (!(size > 0.0)) return false;

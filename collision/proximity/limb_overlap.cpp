@@ -128,10 +128,14 @@ void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
     }
 }
 
+bool LimbOverlap::ignores_nothing() const {
+    return std::all_of(m_ignored.begin(), m_ignored.end(),
+                       [](LimbSet limbs) { return limbs == 0; });
+}
+
 /// Lets vertices touch what they are clear of, at both ends; m_near_home is to be of the start.
 void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
-    const auto none = [](LimbSet limbs) { return limbs == 0; };
-    if (std::all_of(m_ignored.begin(), m_ignored.end(), none)) return;
+    if (ignores_nothing()) return;
     m_keep.assign(m_home.size(), 0);
     keep(boundary, x0, StepEnd::start);
     keep(boundary, x1, StepEnd::end);
@@ -207,11 +211,40 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     ignore_folded(boundary, m_x, StepEnd::end);
     find_buried(boundary, m_x, StepEnd::end);
     ignore_buried();
-    const auto any = [](LimbSet limbs) { return limbs != 0; };
-    if (std::none_of(m_ignored.begin(), m_ignored.end(), any)) return boundary;
+    if (ignores_nothing()) return boundary;
     m_boundary = boundary;
     m_boundary.ignored_limbs = m_ignored;
     return m_boundary;
+}
+
+/// Puts the vertices that ignore the limb into m_rows, to be asked for it and what is joined to it:
+/// past the end of a limb, the next one is nearer.
+void LimbOverlap::select_inside_candidates(LimbSet limb, const std::vector<char>& left_out) {
+    m_rows.clear();
+    for (size_t i = 0; i < m_ignored.size(); ++i) {
+        if ((m_ignored[i] & limb) == 0 || (i < left_out.size() && left_out[i])) continue;
+        m_rows.push_back(static_cast<int>(i));
+        m_without[i] = ~(joined(limb) & ~m_home[i]);
+    }
+}
+
+IgnoredDepth LimbOverlap::measure_ignored(const Points& x, const std::vector<char>& left_out) {
+    if (ignores_nothing() || static_cast<size_t>(x.rows()) != m_ignored.size()) return {};
+    // Of several obstacles the deepest answers: the others must not hide the limbs.
+    const auto other = [](const Obstacle& obstacle) { return !has_limbs(obstacle); };
+    std::vector<Obstacle>& obstacles = m_boundary.obstacles;
+    obstacles.erase(std::remove_if(obstacles.begin(), obstacles.end(), other), obstacles.end());
+    m_has_limbs.assign(obstacles.size(), 1);
+    m_depth = VectorX::Zero(x.rows());
+    for (size_t limb = 0; limb < max_limbs; ++limb) {
+        select_inside_candidates(only(limb), left_out);
+        if (m_rows.empty()) continue;
+        m_proximity.query_rows(x, m_rows, m_boundary, m_near, StepEnd::end, {&m_without});
+        for (const int i : m_rows)
+            if (limb_of(m_boundary, i) == only(limb))
+                m_depth[i] = std::max(m_depth[i], -m_near.distance[i]);
+    }
+    return {static_cast<int>((m_depth.array() > 0.0).count()), m_depth.maxCoeff()};
 }
 
 }  // namespace cloth

@@ -17,6 +17,12 @@ struct LimbOverlapSettings {
                                 ///< to be ignored, 0 to 0.2
 };
 
+/// How far cloth is inside limbs that it ignores.
+struct IgnoredDepth {
+    int vertices = 0;    ///< that are inside a limb that they ignore
+    double depth = 0.0;  ///< of the deepest of them (m)
+};
+
 /// Contact with a body whose limbs pass through each other, as those of motion that was captured
 /// on another body do. Where a limb's skin lies inside another limb there is no room for cloth: it
 /// is pushed out of one into the other, ends on the wrong side of the thinner one, and is dragged
@@ -45,6 +51,12 @@ class LimbOverlap {
     /// ignores any. It is valid until the next call.
     const Boundary& filter(const Boundary& boundary, double dt, const ClothState& state);
 
+    /// How far the vertices are inside limbs that they ignored in the last step, at its end. What
+    /// is deeper than Proximity looks (0.1 m) is not seen. Costs nothing where none is ignored.
+    /// @param x         positions after that step (|V| x 3, m)
+    /// @param left_out  vertices that do not count, such as pins (|V|), or empty
+    IgnoredDepth measure_ignored(const Points& x, const std::vector<char>& left_out = {});
+
     /// The limbs that each vertex ignores in the last step (|V|), or empty.
     const std::vector<LimbSet>& ignored() const { return m_ignored; }
 
@@ -60,6 +72,8 @@ class LimbOverlap {
     void find_buried(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_buried();
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
+    bool ignores_nothing() const;
+    void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
     LimbSet joined(LimbSet limb) const;
     LimbSet limb_at(const Boundary& boundary, int obstacle, int face) const;
     LimbSet limb_of(const Boundary& boundary, int vertex) const;
@@ -77,6 +91,7 @@ class LimbOverlap {
     std::vector<LimbSet> m_without;    ///< |V|: limbs that a query passes over
     SurfaceContacts m_near, m_near_home;
     std::vector<int> m_rows, m_next;
+    VectorX m_depth;      ///< |V| (m): inside limbs that are ignored
     Points m_x;           ///< |V| x 3 (m): where the vertices are heading
     Boundary m_boundary;  ///< of the last step, if any vertex ignored a limb
 };

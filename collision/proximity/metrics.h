@@ -35,8 +35,8 @@ StretchStatistics measure_stretch(const Garment& garment, const Points& x);
 /// How much a garment trembles from frame to frame.
 ///
 ///     JitterMeter jitter;
-///     for (each frame) jitter.add(state.x);
-///     jitter.mean();
+///     for (const ClothState& frame : frames) jitter.add(frame.x);
+///     double trembling = jitter.mean();
 ///
 /// Per vertex and frame, |x_t - 3 x_{t-1} + 3 x_{t-2} - x_{t-3}| / 8: zero for any motion of
 /// constant acceleration, and the amplitude of positions that alternate from one frame to the next.

@@ -9,8 +9,8 @@ namespace cloth {
 /// How a short-sleeved T-shirt is cut for one body. The body stands upright (y up) and faces +z,
 /// its left side is +x; what is given for the left arm holds, mirrored, for the right one.
 ///
-///     TriMesh shirt = make_tshirt(body_rest,
-///     load_tshirt_recipe(asset_path("garments/tshirt.json")));
+///     TshirtRecipe recipe = load_tshirt_recipe(asset_path("garments/tshirt.json"));
+///     TriMesh shirt = make_tshirt(body_rest, recipe);
 ///
 /// The defaults are those of data/assets/garments/tshirt.json: a regular fit for the default body.
 struct TshirtRecipe {

@@ -126,16 +126,19 @@ class MeshBuilder {
         return list == m_file_positions.end() ? none : list->second;
     }
 
+    [[noreturn]] void refuse_position(const aiMesh& mesh, unsigned vertex, const Key& key) const {
+        const std::string name = mesh.mName.C_Str();
+        std::string place = place_of_bad_position(m_path, name, key);
+        if (place.empty()) place = "mesh " + name + ", vertex " + std::to_string(vertex);
+        throw LoadError(m_path, place, "its position is not finite",
+                        "export the mesh again without NaN or infinite coordinates");
+    }
+
     void use_corner(const aiMesh& mesh, unsigned vertex, const FilePositions& positions,
                     std::map<Key, FilePosition>& used, int& appearance) const {
         const Key key = key_of(mesh, vertex);
-        for (float coordinate : key)
-            if (!std::isfinite(coordinate))
-                throw LoadError(m_path,
-                                std::string("mesh ") + mesh.mName.C_Str() + ", vertex " +
-                                    std::to_string(vertex),
-                                "its position is not finite",
-                                "export the mesh again without NaN or infinite coordinates");
+        if (!std::all_of(key.begin(), key.end(), [](float c) { return std::isfinite(c); }))
+            refuse_position(mesh, vertex, key);
         const auto [entry, is_new] = used.try_emplace(key);
         if (!is_new) return;
         const auto listed = positions.find(key);

@@ -28,4 +28,11 @@ using FilePositions = std::map<std::array<float, 3>, FilePosition>;
 /// formats whose vertex order assimp keeps.
 std::map<std::string, FilePositions> read_file_positions(const std::string& path);
 
+/// Where in an OBJ or COLLADA file a position that is not finite stands, such as "line 701": assimp
+/// numbers the corners of the faces instead. "" for formats whose numbers assimp keeps.
+/// @param mesh      the name that assimp gives the mesh
+/// @param position  as assimp read it
+std::string place_of_bad_position(const std::string& path, const std::string& mesh,
+                                  const std::array<float, 3>& position);
+
 }  // namespace cloth

@@ -24,7 +24,7 @@ struct EngineMemory {
 /// vertices, one barrier per message step, no allocation once the garment is known.
 ///
 ///     const auto weights = std::make_shared<const EngineWeights>(Weights::load(file));
-///     LearnedStepper stepper(garment, std::make_shared<Engine>(weights));
+///     const auto stepper = make_cloth(garment, std::make_shared<Engine>(weights));
 ///
 /// One engine serves one thread at a time; several share their weights.
 class Engine : public Predictor {

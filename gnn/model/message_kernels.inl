@@ -125,8 +125,18 @@ inline void evaluate(const Layer& layer, int rows, float* y) {
 #if defined(__AVX512F__)
 typedef int Mask __attribute__((vector_size(64)));
 
+CLOTH_INLINE Lanes shuffle(Lanes a, Lanes b, Mask from) {
+#if defined(__clang__)  // has no such function for a mask that is a value
+    Lanes result = {};
+    for (int k = 0; k < lanes; ++k) result[k] = from[k] < lanes ? a[from[k]] : b[from[k] - lanes];
+    return result;
+#else
+    return __builtin_shuffle(a, b, from);
+#endif
+}
+
 CLOTH_INLINE Lanes shuffled_sum(Lanes a, Lanes b, Mask first, Mask second) {
-    return __builtin_shuffle(a, b, first) + __builtin_shuffle(a, b, second);
+    return shuffle(a, b, first) + shuffle(a, b, second);
 }
 #endif
 

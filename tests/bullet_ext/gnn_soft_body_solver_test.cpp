@@ -42,6 +42,39 @@ void expect_contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
+/// Says that it is inside limbs that it ignores.
+class InIgnoredLimbs : public Stepper {
+ public:
+    explicit InIgnoredLimbs(double depth) : m_depth(depth) {}
+    std::string name() const override { return "in ignored limbs"; }
+    StepReport step(const Boundary&, double, ClothState&) override {
+        StepReport report;
+        report.max_ignored_depth = m_depth;
+        report.vertices_in_ignored_limbs = 3;
+        return report;
+    }
+
+ private:
+    double m_depth;
+};
+
+TEST(GnnSolver, StatusTellsWhatIsInsideLimbsThatItIgnores) {
+    double depth = 0.0;
+    btGnnSoftBodySolver solver([&](const Garment&) {
+        depth += 0.006;
+        return std::make_unique<InIgnoredLimbs>(depth);
+    });
+    World world(&solver);
+    world.add(patch(world.info(), {0, 2, 0}));
+    world.add(patch(world.info(), {0, 3, 0}));
+    for (int step = 0; step < 2; ++step) {
+        world.step(1.0 / 60.0, 1);
+        EXPECT_EQ(solver.status().maxIgnoredDepth, 0.012);
+        EXPECT_EQ(solver.status().nodesInIgnoredLimbs, 6);
+        EXPECT_EQ(solver.status().maxPenetration, 0.0);
+    }
+}
+
 TEST(GnnSolver, FreeFallIsTheClosedFormAtTheWorldsTimeStep) {
     for (double rate : {60.0, 240.0}) {
         btGnnSoftBodySolver solver(free_fall());

@@ -79,7 +79,16 @@ bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
 StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
     if (!m_guard.limbs) return guarded_step(boundary, dt, state);
-    return guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+    StepReport report = guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
+    if (report.finite) report_ignored(state.x, report);
+    return report;
+}
+
+/// What contact leaves alone is no penetration, but nobody should take it for air either.
+void ClothStepper::report_ignored(const Points& x, StepReport& report) {
+    const IgnoredDepth ignored = m_limbs.measure_ignored(x, m_garment->is_pinned());
+    report.vertices_in_ignored_limbs = ignored.vertices;
+    report.max_ignored_depth = ignored.depth;
 }
 
 /// A step that turns out to be too coarse is taken once more, as finely as its report asks for.

@@ -108,6 +108,7 @@ class ClothStepper : public Stepper {
     };
 
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
+    void report_ignored(const Points& x, StepReport& report);
     StepReport take(int substeps, const Boundary& boundary, double dt, double motion,
                     ClothState& state);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);

@@ -250,6 +250,62 @@ TEST(LimbOverlap, OtherObstaclesMayComeAndGo) {
     EXPECT_EQ(ignoring(LimbOverlap().filter(more, dt, state), arm), 0);
 }
 
+int deeper_than(const Points& x, const Vec3& centre, double radius, double depth) {
+    return static_cast<int>(
+        ((x.rowwise() - centre.transpose()).rowwise().norm().array() < radius - depth).count());
+}
+
+/// The arm's skin, a polyhedron, is up to half a millimetre below its sphere. Cloth that still
+/// touches a joined arm does not count.
+void expect_depth_in_arm(const IgnoredDepth& ignored, const Points& x, double arm_x,
+                         bool joined = false) {
+    const Vec3 centre(arm_x, 0, 0);
+    const double nearest = (x.rowwise() - centre.transpose()).rowwise().norm().minCoeff();
+    EXPECT_NEAR(ignored.depth, 0.05 - nearest, 5e-4);
+    EXPECT_LE(ignored.vertices, deeper_than(x, centre, 0.05, 0.0));
+    EXPECT_GE(ignored.vertices, joined ? 1 : deeper_than(x, centre, 0.05, 5e-4));
+}
+
+TEST(LimbOverlap, TellsHowDeepClothIsInALimbThatItIgnores) {
+    for (const bool joined : {false, true}) {
+        const TwoLimbs body(joined);
+        LimbOverlap limbs;
+        const ClothState state = shell();
+        limbs.filter(body.boundary(0.3, 0.3), dt, state);
+        EXPECT_EQ(limbs.measure_ignored(state.x).vertices, 0);
+        EXPECT_EQ(limbs.measure_ignored(state.x).depth, 0.0);
+        limbs.filter(body.boundary(0.17, 0.16), dt, state);
+        ASSERT_GT(deeper_than(state.x, Vec3(0.16, 0, 0), 0.05, 0.0), 5);
+        for (int twice = 0; twice < 2; ++twice)
+            expect_depth_in_arm(limbs.measure_ignored(state.x), state.x, 0.16, joined);
+    }
+}
+
+TEST(LimbOverlap, NoOtherObstacleHidesTheIgnoredLimb) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    Boundary boundary = body.boundary(0.17, 0.17);
+    limbs.filter(boundary, dt, state);
+    boundary.obstacles.insert(boundary.obstacles.begin(),
+                              primitive(ObstacleShape::sphere, Vec3::Zero(), 1.0));
+    limbs.filter(boundary, dt, state);
+    expect_depth_in_arm(limbs.measure_ignored(state.x), state.x, 0.17);
+}
+
+TEST(LimbOverlap, VerticesThatAreLeftOutAreNotDeep) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    const ClothState state = shell();
+    limbs.filter(body.boundary(0.17, 0.17), dt, state);
+    std::vector<char> left_out(size_t(state.x.rows()), 1);
+    EXPECT_EQ(limbs.measure_ignored(state.x, left_out).depth, 0.0);
+    Eigen::Index deepest = 0;
+    state.x.col(0).maxCoeff(&deepest);
+    left_out[size_t(deepest)] = 0;
+    EXPECT_EQ(limbs.measure_ignored(state.x, left_out).vertices, 1);
+}
+
 TEST(LimbOverlap, SettingsOutOfRangeAreNamed) {
     for (const LimbOverlapSettings wrong :
          {LimbOverlapSettings{0.5, 0.01, 0.04}, LimbOverlapSettings{0.05, 0.0, 0.04},

@@ -195,7 +195,60 @@ TEST_F(MeshIo, UnknownFormatIsRefused) {
 TEST_F(MeshIo, VertexThatIsNotFiniteIsNamed) {
     expect_error(write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), "not finite");
     expect_error(write("inf.obj", "v 0 0 0\nv inf 0 0\nv 0 1 0\nf 1 2 3\n"), "not finite");
-    expect_error(write("nan.ply", ply("0 0 0\nnan 0 0\n0 1 0\n", "3 0 1 2\n", 3, 1)), "not finite");
+    expect_error(write("nan.ply", ply("0 0 0\nnan 0 0\n0 1 0\n", "3 0 1 2\n", 3, 1)),
+                 "vertex 1: its position is not finite");
+}
+
+/// assimp numbers the corners of faces; who mends the file needs its lines.
+TEST_F(MeshIo, ObjPositionThatIsNotFiniteIsNamedByItsLine) {
+    std::string text = "# a grid\n\nmtllib none.mtl\no grid\n";
+    for (int k = 0; k < 700; ++k) {
+        const std::string x = k == 650 ? "nan" : std::to_string(k / 70);
+        text += "v " + x + " " + std::to_string(k % 70) + " 0\n";
+    }
+    text += "vt nan 0\nvn 0 0 nan\n";  // not read
+    for (int i = 0; i < 9; ++i)
+        for (int k = 1; k < 70; ++k) {
+            const int a = 70 * i + k, b = a + 70;
+            text += "f " + std::to_string(b + 1) + " " + std::to_string(b) + " " +
+                    std::to_string(a) + " " + std::to_string(a + 1) + "\n";
+        }
+    expect_error(write("grid.obj", text), "grid.obj, line 655: its position is not finite");
+}
+
+TEST_F(MeshIo, ThePositionOfAFaceIsNamedNotALooseOne) {
+    expect_error(
+        write("loose.obj", "v inf 7 7\nv 0 0 0\r\nv 1 nan 0 0.5 0.5 0.5\r\nv 0 1 0\nf 2 3 4\n"),
+        ", line 3: ");
+    EXPECT_EQ(load_mesh(write("kept.obj", "v inf 7 7\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n"))
+                  .vertices.rows(),
+              3);
+    expect_error(write("large.obj", "v 0 0 0\nv 1 0 0\nv 0 1e60 0\nf 1 2 3\n"), ", line 3: ");
+}
+
+TEST_F(MeshIo, ColladaPositionThatIsNotFiniteIsNamedByItsLine) {
+    const auto collada = [](const char* numbers) {
+        return std::string(
+                   "<?xml version=\"1.0\"?>\n<COLLADA "
+                   "xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+                   "version=\"1.4.1\">\n<library_geometries>"
+                   "<geometry id=\"sheet\" name=\"sheet\"><mesh>\n"
+                   "<source id=\"p\"><float_array id=\"a\" count=\"12\">\n") +
+               numbers +
+               "</float_array><technique_common><accessor source=\"#a\" count=\"4\" stride=\"3\">"
+               "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
+               "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>\n"
+               "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\n"
+               "<triangles count=\"2\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>"
+               "<p>0 1 2 2 1 3</p></triangles></mesh></geometry></library_geometries>\n"
+               "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">"
+               "<instance_geometry url=\"#sheet\"/></node></visual_scene>"
+               "</library_visual_scenes>\n<scene><instance_visual_scene url=\"#s\"/></scene>"
+               "</COLLADA>\n";
+    };
+    EXPECT_EQ(load_mesh(write("good.dae", collada("0 0 0\n1 0 0\n0 1 0\n1 1 0"))).faces.rows(), 2);
+    expect_error(write("nan.dae", collada("0 0 0\n1 0 0\n0 1 0\n1 nan 0")),
+                 "nan.dae, line 8, position 3 of geometry sheet: ");
 }
 
 TEST_F(MeshIo, FaceWithoutAreaIsNamed) {

@@ -297,26 +297,29 @@ TEST_F(Guard, SteppersSayHowDeepTheyWentPastASurface) {
     EXPECT_LT(report.max_penetration, 1e-3);
 }
 
-TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
-    // two blocks of one body in one place; the sheet is at home on the first
-    Obstacle body;
-    TriMesh block = make_sheet(0.3, 0.3, 100);
-    const Eigen::Index count = block.vertices.rows();
-    Faces faces(2 * block.faces.rows(), 3);
-    faces << block.faces, block.faces.array() + static_cast<int>(count);
+/// Two squares of one body that face along x, the second 3 cm behind the first: limbs 0 and 1.
+Obstacle two_skins(double width) {
+    const TriMesh square = make_sheet(width, width, 100);
+    const Eigen::Index count = square.vertices.rows();
+    Faces faces(2 * square.faces.rows(), 3);
+    faces << square.faces, square.faces.array() + static_cast<int>(count);
     auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 0);
-    std::fill(limbs->begin() + block.faces.rows(), limbs->end(), 1);
+    std::fill(limbs->begin() + square.faces.rows(), limbs->end(), 1);
+    Obstacle body;
     body.faces = std::make_shared<const Faces>(faces);
     body.limbs = limbs;
-    // both face along x; the second 3 cm behind the first
     body.x0.resize(2 * count, 3);
     for (Eigen::Index i = 0; i < count; ++i) {
-        const Vec3 at = block.vertices.row(i);
+        const Vec3 at = square.vertices.row(i);
         body.x0.row(i) << -0.01, at.z(), at.x();
         body.x0.row(count + i) << -0.04, at.z(), at.x();
     }
     body.x1 = body.x0;
-    m_boundary.obstacles = {body};
+    return body;
+}
+
+TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
+    m_boundary.obstacles = {two_skins(0.3)};  // the first is the sheet's own limb
     auto solver = std::make_unique<Entering>(m_garment, 0.0);
     const Entering& seen = *solver;
     ClothStepper stepper(m_garment, std::move(solver));
@@ -327,6 +330,22 @@ TEST_F(Guard, LimbsThatPassThroughOthersAreIgnored) {
               std::count_if(seen.ignored.begin(), seen.ignored.end(),
                             [](LimbSet set) { return set != 0; }));
     EXPECT_GT(std::count(seen.ignored.begin(), seen.ignored.end(), LimbSet(2)), 50);
+}
+
+TEST_F(Guard, TellsHowDeepTheGarmentIsInLimbsThatItIgnores) {
+    m_boundary.obstacles = {two_skins(1.2)};
+    GuardSettings guard;
+    guard.max_substeps = 1;
+    const auto shifted = [&](double shift) {
+        ClothState state = m_state;
+        return ClothStepper(m_garment,
+                            std::make_unique<Flying>(m_garment, Vec3(shift, 0, 0)), guard)
+            .step(m_boundary, dt, state);
+    };
+    const StepReport deep = shifted(-0.06);
+    EXPECT_EQ(deep.vertices_in_ignored_limbs, m_garment.vertex_count());
+    EXPECT_NEAR(deep.max_ignored_depth, 0.02, 1e-9);
+    EXPECT_EQ(shifted(-0.03).vertices_in_ignored_limbs, 0);
 }
 
 TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
