@@ -9,7 +9,7 @@
 #include "collision/ccd/primitive_sweep.h"
 #include "collision/geometry/faces_in_range.h"
 #include "collision/geometry/gather_in_order.h"
-#include "collision/geometry/triangle.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/geometry/primitives.h"
-#include "collision/geometry/triangle.h"
+#include "data/core/primitives.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 

@@ -5,7 +5,9 @@
 
 namespace cloth {
 
-/// The slow, obvious twin of Proximity: the oracle of its tests.
+/// The slow, obvious twin of Proximity: the oracle of its tests. It shares the closest point of one
+/// triangle and of one primitive, which have tests of their own; what it must not share is the
+/// search and the sign, so the pseudonormal is worked out here once more, from the bare faces.
 
 /// Closest point of a surface to a query point.
 struct SurfacePoint {

@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "collision/geometry/triangle.h"
 #include "data/core/mesh.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 
@@ -108,7 +108,7 @@ SurfaceHit MeshSurface::on_face(const FaceHit& hit, const Vec3& away) const {
 static double corner_angle(const std::array<Vec3, 3>& corners, int pivot) {
     const Vec3 u = corners[size_t((pivot + 1) % 3)] - corners[size_t(pivot)];
     const Vec3 v = corners[size_t((pivot + 2) % 3)] - corners[size_t(pivot)];
-    return std::atan2(u.cross(v).norm(), u.dot(v));
+    return angle_between(u, v);
 }
 
 int MeshSurface::corner_at(int face, int vertex) const {

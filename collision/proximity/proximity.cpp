@@ -7,10 +7,10 @@
 #include <limits>
 
 #include "collision/geometry/faces_in_range.h"
-#include "collision/geometry/primitives.h"
-#include "collision/geometry/triangle.h"
 #include "collision/proximity/mesh_surface.h"
 #include "data/core/errors.h"
+#include "data/core/primitives.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth::fuzz {
 namespace {
@@ -90,7 +90,7 @@ Obstacle random_mesh_obstacle(Random& random, const Vec3& near_by) {
     TriMesh mesh = random.chance(0.5) ? test::icosphere(random.between(0, 2)) : test::cube();
     if (random.chance(0.2)) mesh = test::triangle_soup(mesh);
     mesh.vertices *= random.uniform(0.02, 0.2);
-    mesh.vertices = test::transformed(mesh.vertices, random_pose(random, near_by));
+    mesh.vertices = transformed(mesh.vertices, random_pose(random, near_by));
     return test::mesh_obstacle(mesh);
 }
 

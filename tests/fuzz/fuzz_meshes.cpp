@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth::fuzz {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "collision/proximity/brute_force.h"
 #include "data/authoring/sheet.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

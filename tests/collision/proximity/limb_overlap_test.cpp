@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -5,7 +5,7 @@
 #include "collision/proximity/brute_force.h"
 #include "collision/proximity/proximity.h"
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
