@@ -23,8 +23,8 @@ void list_cases() {
 /// The case with the bound of stretch that the reference's row sets, if there is one.
 HardCase bounded(HardCase hard, const HardReport& report, int frames) {
     const HardRow* reference = report.find(hard.name, "reference", frames);
-    if (hard.stretch_of_reference > 0.0 && reference && reference->held)
-        hard.bounds.stretch_p99 = hard.stretch_of_reference * reference->stretch_p99;
+    if (hard.stretch_of_reference && reference && reference->held)
+        hard.bounds.stretch_p99 = *hard.stretch_of_reference * reference->stretch_p99;
     return hard;
 }
 
