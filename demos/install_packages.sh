@@ -9,7 +9,7 @@ packages=(
   libbullet-dev libfcl-dev libeigen3-dev libassimp-dev assimp-testmodels
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
-  libcgal-dev libsuitesparse-dev nlohmann-json3-dev
+  libcgal-dev libsuitesparse-dev nlohmann-json3-dev libcli11-dev
   libgtest-dev libbenchmark-dev
 )
 if [ "${CLOTH_WITH_TORCH:-1}" != 0 ]; then

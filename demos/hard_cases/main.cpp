@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
 #include "demos/hard_cases/contest.h"
 #include "demos/hard_cases/motion_cases.h"
@@ -75,11 +76,7 @@ void run(const HardCaseOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        run(parse_hard_case_options(std::vector<std::string>(argv + 1, argv + argc)));
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        run(parse_hard_case_options(arguments));
+    });
 }
