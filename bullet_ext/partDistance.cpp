@@ -67,7 +67,8 @@ double PartDistance::at(const Vec3& point, double radius) const {
     if (!m_mesh || (point.array() < m_low.array() - radius).any() ||
         (point.array() > m_high.array() + radius).any())
         return far;
-    return m_mesh->nearest(point, radius).distance;
+    const auto nearest = m_mesh->nearest_within(radius, point);
+    return nearest ? nearest->distance : far;
 }
 
 }  // namespace cloth

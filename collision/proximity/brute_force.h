@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "collision/proximity/proximity.h"
 #include "data/core/mesh.h"
 
@@ -11,14 +13,14 @@ namespace cloth {
 
 /// Closest point of a surface to a query point.
 struct SurfacePoint {
-    int face = -1;                    ///< lowest face that attains the minimum; -1: no usable face
+    int face = 0;                     ///< lowest face that attains the minimum
     Vec3 barycentric = Vec3::Zero();  ///< in that face
     Vec3 point = Vec3::Zero();        ///< (m)
     double distance = 0.0;            ///< unsigned (m)
 };
 
-/// Closest point over all faces with area.
-SurfacePoint brute_force_closest(const TriMesh& mesh, const Vec3& q);
+/// Closest point over all faces with area; nothing if there is none.
+std::optional<SurfacePoint> brute_force_closest(const TriMesh& mesh, const Vec3& q);
 
 /// Signed distance (m) of q to a closed mesh: the sign of (q - p) . n with p the closest point and
 /// n the angle-weighted pseudonormal of the face, edge or vertex on which p lies. Baerentzen and

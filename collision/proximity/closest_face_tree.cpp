@@ -225,9 +225,10 @@ ClosestFaceTree::Eight ClosestFaceTree::box_entries(const Node& node, const Eige
     return (enter <= leave).select(enter, infinity);
 }
 
-int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
-                               double* distance, LimbSet ignored) const {
-    if (m_nodes.empty()) return -1;
+std::optional<RayHit> ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction,
+                                                 double length, Stack& stack,
+                                                 LimbSet ignored) const {
+    if (m_nodes.empty()) return std::nullopt;
     const Eigen::Vector3f local = (q - m_origin).cast<float>();
     Eigen::Vector3f inverse;
     for (int k = 0; k < 3; ++k) {
@@ -255,8 +256,8 @@ int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double leng
             if (enter[slot] < infinity && (node.limbs[slot] & ~ignored) != 0)
                 *end++ = {node.child[slot], enter[slot] * 0.99999f};
     }
-    if (distance) *distance = nearest;
-    return face;
+    if (face < 0) return std::nullopt;
+    return RayHit{face, nearest};
 }
 
 /// Where the ray meets a face; infinity: it does not.

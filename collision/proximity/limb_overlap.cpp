@@ -101,7 +101,7 @@ bool LimbOverlap::is_clear(int vertex, LimbSet limb, StepEnd end) {
     if (m_near.distance[vertex] < m_settings.margin) return false;
     const bool folded = (m_strangers[static_cast<size_t>(vertex)] & limb) == 0;
     const LimbSet own = folded ? limb : joined(limb);
-    if (m_proximity.cover(m_near, vertex, end, own).depth > 0.0) return false;
+    if (m_proximity.cover(m_near, vertex, end, own)) return false;
     if (!m_near_home.has(vertex)) return true;
     const bool start = end == StepEnd::start;
     const Vec3 home = (start ? m_near_home.point0 : m_near_home.point1).row(vertex);
@@ -156,7 +156,7 @@ void LimbOverlap::find_buried(const Boundary& boundary, const Points& x, StepEnd
             if (limb == 0) continue;
             m_without[static_cast<size_t>(i)] |= limb;
             m_next.push_back(i);
-            if (m_proximity.cover(m_near, i, end, joined(limb)).depth > 0.0) m_buried |= limb;
+            if (m_proximity.cover(m_near, i, end, joined(limb))) m_buried |= limb;
         }
         m_rows.swap(m_next);
     }
@@ -180,9 +180,9 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
     for (const int i : m_rows) {
         const auto vertex = static_cast<size_t>(i);
         const LimbSet not_joined = m_home[vertex] | m_strangers[vertex];
-        const Cover cover = m_proximity.cover(m_near_home, i, end, not_joined);
-        if (!(cover.depth > m_settings.least_cover)) continue;
-        m_without[vertex] = ~limb_at(boundary, m_near_home.obstacle[vertex], cover.face);
+        const auto cover = m_proximity.cover(m_near_home, i, end, not_joined);
+        if (!cover || !(cover->depth > m_settings.least_cover)) continue;
+        m_without[vertex] = ~limb_at(boundary, m_near_home.obstacle[vertex], cover->face);
         m_next.push_back(i);
     }
     m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});

@@ -80,15 +80,14 @@ Vec3 MeshSurface::normal(int face) const {
     return normal;
 }
 
-Cover MeshSurface::cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack,
-                         LimbSet ignored) const {
+std::optional<Cover> MeshSurface::cover(const Vec3& point, int face, double length,
+                                        ClosestFaceTree::Stack& stack, LimbSet ignored) const {
     constexpr double start = 1e-5;  // m: off the face itself
     const Vec3 up = normal(face);
-    if (up.isZero(0.0)) return {};
-    double at = 0.0;
-    const int hit = m_tree.first_hit(point + start * up, up, length, stack, &at, ignored);
-    if (hit < 0 || !(normal(hit).dot(up) > 0.0)) return {};
-    return {at, hit};
+    if (up.isZero(0.0)) return std::nullopt;
+    const auto hit = m_tree.first_hit(point + start * up, up, length, stack, ignored);
+    if (!hit || !(hit->distance > 0.0) || !(normal(hit->face).dot(up) > 0.0)) return std::nullopt;
+    return Cover{hit->distance, hit->face};
 }
 
 static double signed_root(double squared, bool negative) {

@@ -265,16 +265,16 @@ void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const 
         [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 
-Cover Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
-                       LimbSet ignored) {
+std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i,
+                                      StepEnd chosen_at, LimbSet ignored) {
     constexpr double length = 0.5;  // m: thicker than any limb
-    if (!contacts.has(i)) return {};
+    if (!contacts.has(i)) return std::nullopt;
     const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
     for (const Target& target : m_impl->targets)
         if (target.index == contacts.obstacle[size_t(i)] && target.surface)
             return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
                                          m_impl->stacks[0], ignored);
-    return {};
+    return std::nullopt;
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,

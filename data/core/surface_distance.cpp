@@ -154,14 +154,17 @@ const TriMesh& SurfaceDistance::surface() const {
     return m_impl->surface;
 }
 
-NearestPoint SurfaceDistance::nearest(const Vec3& p, double radius) const {
+NearestPoint SurfaceDistance::nearest(const Vec3& p) const {
+    return nearest_within(std::numeric_limits<double>::infinity(), p).value();
+}
+
+std::optional<NearestPoint> SurfaceDistance::nearest_within(double radius, const Vec3& p) const {
+    constexpr int none = -1;
     NearestPoint result;
+    result.face = none;
     double best = radius * radius;
     m_impl->search(0, p, best, result.face, result.weights);
-    if (result.face < 0) {
-        result.distance = std::numeric_limits<double>::infinity();
-        return result;
-    }
+    if (result.face == none) return std::nullopt;
     for (int c = 0; c < 3; ++c) result.point += result.weights[c] * m_impl->corner(result.face, c);
     result.normal = m_impl->normal(result.face, result.weights);
     const double distance = (p - result.point).norm();

@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -168,4 +168,4 @@ double random_time_step(Random& random) {
         {1.0 / 240.0, 1e-9, 10.0, 0.0, -0.1, nan, infinity, 1e-300, 1e300});
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

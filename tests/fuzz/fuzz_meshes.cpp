@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 using Defect = void (*)(TriMesh&, Random&);
@@ -172,4 +172,4 @@ std::vector<int> random_pins(Random& random, int count) {
     return pins;
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -10,7 +10,7 @@
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 std::unique_ptr<Stepper> quasi_newton(const Garment& garment) {
@@ -113,4 +113,4 @@ std::string checked_step(Stepper& stepper, const Garment& garment, const Boundar
     }
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

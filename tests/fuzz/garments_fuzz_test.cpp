@@ -9,7 +9,7 @@
 #include "tests/fuzz/fuzz_steppers.h"
 #include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr int frames = 5;
@@ -81,4 +81,4 @@ TEST(GarmentsFuzz, FabricsOutOfRangeAreRefusedByField) {
 }
 
 }  // namespace
-}  // namespace cloth::fuzz
+}  // namespace cloth::test
