@@ -87,7 +87,7 @@ TEST(LimbOverlap, LeavesABodyWithoutOverlapAlone) {
     EXPECT_TRUE(limbs.ignored().empty());
 }
 
-TEST(LimbOverlap, AllClothIgnoresABuriedLimbUntilItIsClear) {
+TEST(LimbOverlap, AllClothIgnoresACoveredLimbUntilItIsClear) {
     const TwoLimbs body(false);
     LimbOverlap limbs;
     const ClothState state = shell();

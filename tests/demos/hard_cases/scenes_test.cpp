@@ -89,7 +89,7 @@ TEST(HardScenes, MotionsLetLimbsPass) {
 }
 
 /// An arm that goes into the chest takes no cloth along, whatever the number of threads.
-TEST(HardScenes, ClothLetsABuriedArmPass) {
+TEST(HardScenes, ClothLetsACoveredArmPass) {
     const HardCase hard = motion_case("Boxing_Toes", "tshirt_1000");
     const HardScene scene(hard.parts(), 32);
     const HardCase held = [&] {
