@@ -26,13 +26,6 @@ struct Piece {
     bool final = false;         ///< cannot be cut
 };
 
-Points rowsOf(const Points& all, const std::vector<int>& rows) {
-    Points picked(static_cast<Eigen::Index>(rows.size()), 3);
-    for (size_t i = 0; i < rows.size(); ++i)
-        picked.row(static_cast<Eigen::Index>(i)) = all.row(rows[i]);
-    return picked;
-}
-
 class Cutter {
  public:
     explicit Cutter(const TriMesh& rest)
@@ -49,7 +42,7 @@ class Cutter {
         piece.axis = axis;
         piece.segment.joint = joint;
         piece.segment.vertices = withNeighbours(piece.owned);
-        piece.segment.rest = rowsOf(m_rest.vertices, piece.segment.vertices);
+        piece.segment.rest = m_rest.vertices(piece.segment.vertices, Eigen::all);
         piece.segment.hull_points_rest = convexHull(piece.segment.rest).vertices;
         piece.standoff = hull_standoff(piece.segment);
         return piece;
@@ -57,7 +50,7 @@ class Cutter {
 
     /// Cuts a piece in the middle into itself and the returned one; nothing if it is too small.
     std::optional<Piece> cut(Piece& whole) const {
-        const VectorX along = rowsOf(m_rest.vertices, whole.owned) * whole.axis;
+        const VectorX along = Points(m_rest.vertices(whole.owned, Eigen::all)) * whole.axis;
         const double low = along.minCoeff(), high = along.maxCoeff();
         std::vector<int> below, above;
         for (size_t i = 0; i < whole.owned.size(); ++i)
@@ -74,7 +67,7 @@ class Cutter {
 
     /// The principal axis across which four slabs fit best.
     Vec3 bestAxis(int joint, const std::vector<int>& owned) const {
-        const Points x = rowsOf(m_rest.vertices, owned);
+        const Points x = m_rest.vertices(owned, Eigen::all);
         const Points spread = x.rowwise() - x.colwise().mean();
         const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(spread.transpose() * spread);
         Vec3 best = axes.eigenvectors().col(2);

@@ -38,7 +38,7 @@ bool fitsDistanceField(const btSoftBody& body) {
     return true;
 }
 
-/// Bounds that are not finite spoil Bullet's broadphase for everybody, its tree loses what is
+/// Bounds that are not finite damage Bullet's broadphase for all objects, its tree loses what is
 /// beside them; and Bullet disables the body for good.
 void mendBounds(btSoftBody& body) {
     btBroadphaseProxy* proxy = body.getBroadphaseHandle();

@@ -30,13 +30,6 @@ Pose rigidFit(const Points& from, const Points& to) {
     return pose;
 }
 
-Points rowsOf(const Points& all, const std::vector<int>& rows) {
-    Points picked(static_cast<Eigen::Index>(rows.size()), 3);
-    for (size_t i = 0; i < rows.size(); ++i)
-        picked.row(static_cast<Eigen::Index>(i)) = all.row(rows[i]);
-    return picked;
-}
-
 bool belongTo(const std::vector<BodySegment>& segments, const Obstacle& obstacle) {
     for (const BodySegment& segment : segments)
         if (!segment.vertices.empty() && segment.vertices.back() >= obstacle.x0.rows())
@@ -67,16 +60,6 @@ std::unique_ptr<btCollisionShape> primitiveShape(const Obstacle& o) {
     }
 }
 
-Pose between(const Pose& a, const Pose& b, double s) {
-    if (s <= 0.0 || a.matrix() == b.matrix()) return a;
-    if (s >= 1.0) return b;
-    Pose pose = Pose::Identity();
-    pose.linear() =
-        Eigen::Quaterniond(a.linear()).slerp(s, Eigen::Quaterniond(b.linear())).toRotationMatrix();
-    pose.translation() = (1.0 - s) * a.translation() + s * b.translation();
-    return pose;
-}
-
 }  // namespace
 
 BulletHulls::BulletHulls() = default;
@@ -97,10 +80,10 @@ void BulletHulls::match(const std::vector<Obstacle>& obstacles,
         const Obstacle& o = obstacles[piece.obstacle];
         piece.body->setFriction(static_cast<btScalar>(o.friction));
         const Pose pose0 =
-            piece.segment ? rigidFit(piece.segment->rest, rowsOf(o.x0, piece.segment->vertices))
+            piece.segment ? rigidFit(piece.segment->rest, o.x0(piece.segment->vertices, Eigen::all))
                           : o.pose0;
         const Pose pose1 =
-            piece.segment ? rigidFit(piece.segment->rest, rowsOf(o.x1, piece.segment->vertices))
+            piece.segment ? rigidFit(piece.segment->rest, o.x1(piece.segment->vertices, Eigen::all))
                           : o.pose1;
         piece.pose0 = pose0 * piece.local;
         piece.pose1 = pose1 * piece.local;
@@ -175,7 +158,7 @@ void BulletHulls::addPiece(Piece piece, btSoftRigidDynamicsWorld& world) {
 
 void BulletHulls::moveTo(double s, bool jump) {
     for (Piece& piece : m_pieces) {
-        const btTransform transform = toBullet(between(piece.pose0, piece.pose1, s));
+        const btTransform transform = toBullet(interpolate(piece.pose0, piece.pose1, s));
         piece.body->setWorldTransform(transform);
         if (jump) piece.body->setInterpolationWorldTransform(transform);
     }

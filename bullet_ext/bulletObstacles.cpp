@@ -18,23 +18,6 @@ namespace cloth {
 
 namespace {
 
-/// The pose on the way from a to b: s = 0 at a, 1 at b, more beyond b.
-Pose between(const Pose& a, const Pose& b, double s) {
-    if (s == 0.0 || a.matrix() == b.matrix()) return a;
-    if (s == 1.0) return b;
-    Pose pose;
-    const Eigen::AngleAxisd turn(b.linear() * a.linear().transpose());
-    pose.linear() =
-        Eigen::AngleAxisd(s * turn.angle(), turn.axis()).toRotationMatrix() * a.linear();
-    pose.translation() = a.translation() + s * (b.translation() - a.translation());
-    pose.makeAffine();
-    return pose;
-}
-
-Points transformed(const Pose& pose, const Points& local) {
-    return (local * pose.linear().transpose()).rowwise() + pose.translation().transpose();
-}
-
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
@@ -181,8 +164,8 @@ BulletObstacles::Track& BulletObstacles::update(const btCollisionObject& object)
         if (!(target == track.target)) track.remaining = travelTime(object, track.target, m_h);
         track.begin = track.end;
         const bool arrives = track.remaining <= 1.001 * m_h;
-        track.end =
-            arrives ? toPose(target) : between(track.begin, toPose(target), m_h / track.remaining);
+        track.end = arrives ? toPose(target)
+                            : interpolate(track.begin, toPose(target), m_h / track.remaining);
         track.remaining = arrives ? 0.0 : track.remaining - m_h;
     }
     track.target = target;
@@ -192,8 +175,8 @@ BulletObstacles::Track& BulletObstacles::update(const btCollisionObject& object)
 
 void BulletObstacles::append(const Track& track, double friction, const TimeSpan& span,
                              std::vector<Obstacle>& obstacles) const {
-    const Pose pose0 = between(track.begin, track.end, span.begin / m_h);
-    const Pose pose1 = between(track.begin, track.end, (span.begin + span.length) / m_h);
+    const Pose pose0 = interpolate(track.begin, track.end, span.begin / m_h);
+    const Pose pose1 = interpolate(track.begin, track.end, (span.begin + span.length) / m_h);
     for (const ShapePart& part : track.parts) {
         Obstacle obstacle;
         obstacle.shape = part.shape;
@@ -202,8 +185,8 @@ void BulletObstacles::append(const Track& track, double friction, const TimeSpan
         obstacle.friction = friction;
         if (part.shape == ObstacleShape::mesh) {
             obstacle.faces = part.faces;
-            obstacle.x0 = transformed(pose0, part.vertices);
-            obstacle.x1 = transformed(pose1, part.vertices);
+            obstacle.x0 = transformed(part.vertices, pose0);
+            obstacle.x1 = transformed(part.vertices, pose1);
         } else {
             obstacle.pose0 = pose0 * part.frame;
             obstacle.pose1 = pose1 * part.frame;
@@ -297,7 +280,7 @@ std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const
         btRigidBody* pushed =
             dynamic(object) ? const_cast<btRigidBody*>(btRigidBody::upcast(object)) : nullptr;
         solids.push_back(
-            {pushed, between(track.begin, track.end, time / m_h).inverse(), &track.distances});
+            {pushed, interpolate(track.begin, track.end, time / m_h).inverse(), &track.distances});
     }
     return solids;
 }

@@ -167,9 +167,7 @@ std::vector<ShapePart> partsOfCompound(const btCompoundShape& compound) {
         const Pose child = toPose(compound.getChildTransform(i));
         for (ShapePart& part : partsOfShape(*compound.getChildShape(i))) {
             part.frame = child * part.frame;
-            part.vertices = ((part.vertices * child.linear().transpose()).rowwise() +
-                             child.translation().transpose())
-                                .eval();
+            part.vertices = transformed(part.vertices, child);
             parts.push_back(std::move(part));
         }
     }

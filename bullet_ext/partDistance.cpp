@@ -1,25 +1,15 @@
 #include "bullet_ext/partDistance.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "data/core/errors.h"
+#include "data/core/primitives.h"
 
 namespace cloth {
 
 namespace {
-
-double boxDistance(const Vec3& p, const Vec3& half_extents, double rounding) {
-    const Vec3 q = p.cwiseAbs() - half_extents;
-    return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0) - rounding;
-}
-
-double capsuleDistance(const Vec3& p, double half_length, double radius) {
-    const Vec3 nearest(0.0, std::clamp(p.y(), -half_length, half_length), 0.0);
-    return (p - nearest).norm() - radius;
-}
 
 Faces facesWithArea(const Points& x, const Faces& faces) {
     constexpr double kLeast = 1e-14;  // m^2
@@ -58,7 +48,10 @@ std::unique_ptr<SurfaceDistance> distanceTo(const Points& x, const Faces& all) {
 
 }  // namespace
 
-PartDistance::PartDistance(const ShapePart& part) : m_part(part), m_inverse(part.frame.inverse()) {
+PartDistance::PartDistance(const ShapePart& part) : m_inverse(part.frame.inverse()) {
+    m_primitive.shape = part.shape;
+    m_primitive.half_extents = part.half_extents;
+    m_primitive.radius = part.radius;
     if (part.shape != ObstacleShape::mesh) return;
     m_low = part.vertices.colwise().minCoeff();
     m_high = part.vertices.colwise().maxCoeff();
@@ -66,28 +59,16 @@ PartDistance::PartDistance(const ShapePart& part) : m_part(part), m_inverse(part
 }
 
 double PartDistance::at(const Vec3& point, double radius) const {
-    const Vec3 local = m_inverse * point;
-    double distance = std::numeric_limits<double>::infinity();
-    switch (m_part.shape) {
-        case ObstacleShape::sphere:
-            distance = local.norm() - m_part.radius;
-            break;
-        case ObstacleShape::box:
-            distance = boxDistance(local, m_part.half_extents, m_part.radius);
-            break;
-        case ObstacleShape::capsule:
-            distance = capsuleDistance(local, m_part.half_extents.y(), m_part.radius);
-            break;
-        case ObstacleShape::plane:
-            distance = local.y();
-            break;
-        case ObstacleShape::mesh:
-            if (!m_mesh || (point.array() < m_low.array() - radius).any() ||
-                (point.array() > m_high.array() + radius).any())
-                return distance;
-            return m_mesh->nearest(point, radius).distance;
+    constexpr double far = std::numeric_limits<double>::infinity();
+    if (m_primitive.shape != ObstacleShape::mesh) {
+        const double distance = closest_on_primitive(m_primitive, m_inverse * point).distance;
+        return distance <= radius ? distance : far;
     }
-    return distance <= radius ? distance : std::numeric_limits<double>::infinity();
+    if (!m_mesh || (point.array() < m_low.array() - radius).any() ||
+        (point.array() > m_high.array() + radius).any())
+        return far;
+    const auto nearest = m_mesh->nearest_within(radius, point);
+    return nearest ? nearest->distance : far;
 }
 
 }  // namespace cloth

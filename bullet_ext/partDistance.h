@@ -19,9 +19,9 @@ class PartDistance {
     double at(const Vec3& point, double radius) const;
 
  private:
-    ShapePart m_part;
-    Pose m_inverse;      ///< from the whole shape's frame to the primitive's
-    Vec3 m_low, m_high;  ///< bounds of a mesh (m)
+    Obstacle m_primitive;  ///< of a mesh only the shape counts
+    Pose m_inverse;        ///< from the whole shape's frame to the primitive's
+    Vec3 m_low, m_high;    ///< bounds of a mesh (m)
     std::unique_ptr<SurfaceDistance> m_mesh;
 };
 

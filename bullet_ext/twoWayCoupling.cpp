@@ -39,7 +39,7 @@ Eigen::Matrix<double, 6, 6> massMatrix(const btRigidBody& body) {
 }
 
 /// Cloth spins no body faster than this per cloth step, whatever the lever: pins are extrapolated
-/// over a cloth step, and farther than that the extrapolation feeds the spin.
+/// over a cloth step, and farther than that the extrapolation amplifies the spin.
 Vec3 limitedTurn(const Vec3& turning, const Vec3& change, double length) {
     constexpr double kTurn = 0.3;  // rad
     const double limit = std::max(turning.norm(), kTurn / length);
@@ -225,7 +225,7 @@ void TwoWayCoupling::findOwners(const ClothStep& step) {
 }
 
 /// Momentum balance of every node, summed over the nodes that a held one owns; what its holder gave
-/// goes on the holder's account.
+/// is added to the holder's impulse.
 void TwoWayCoupling::findImpulses(const ClothStep& step) {
     const double h = step.length;
     m_impulses.setZero(step.to.x.rows(), 3);
@@ -246,7 +246,7 @@ void TwoWayCoupling::findImpulses(const ClothStep& step) {
         if (m_holder[static_cast<size_t>(i)]) charge(step, i);
 }
 
-/// Puts what a held node took on its holder's account.
+/// Adds what a held node took to its holder's impulse.
 void TwoWayCoupling::charge(const ClothStep& step, int node) {
     const btRigidBody& holder = *m_holder[static_cast<size_t>(node)];
     Account& account = m_accounts[m_holder[static_cast<size_t>(node)]];

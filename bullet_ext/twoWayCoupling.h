@@ -106,7 +106,7 @@ class TwoWayCoupling {
     btSoftBody& m_body;
     double m_mass_ratio = 1.0;  ///< of this cloth step, massRatio()
     std::map<btRigidBody*, Account> m_accounts;
-    std::vector<btRigidBody*> m_holder;          ///< |V|: null: nobody that could be pushed
+    std::vector<btRigidBody*> m_holder;          ///< |V|: null: no body that can be pushed
     std::vector<char> m_held;                    ///< |V|: by anything at all
     std::vector<std::vector<int>> m_neighbours;  ///< |V|
     std::vector<int> m_owner, m_queue;           ///< |V|: the held node a node belongs to, or -1

@@ -9,7 +9,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build pkg-config ccache
-  libbullet-dev libfcl-dev libeigen3-dev libassimp-dev assimp-testmodels nlohmann-json3-dev
+  libbullet-dev libfcl-dev libeigen3-dev libassimp-dev assimp-testmodels nlohmann-json3-dev libcli11-dev
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
 )

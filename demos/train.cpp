@@ -3,6 +3,7 @@
 //     train --variant fast --width 32 --minutes 60 --out out/fast
 //     train --variant baseline --recipe paper --device cuda --iterations 110000 --out out/baseline
 
+#include <CLI/CLI.hpp>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -21,30 +22,6 @@ void on_signal(int) {
     g_stop = true;
 }
 
-const char* const usage =
-    R"(train: trains a cloth network on the incremental potential, without ground truth
-
-  --variant NAME      baseline, sampling, reduction or fast (fast)
-  --recipe NAME       quick: an hour on a processor core; paper: FastClothGNN's (quick)
-  --loss NAME         energy, log or both (the recipe's)
-  --minutes M         wall time of the training
-  --iterations N      end after so many iterations
-  --width D           latent size, a multiple of 16 trains fastest (128)
-  --steps L           message passing steps (21)
-  --force-features 0|1  forces at x_t and at the guess as input (1)
-  --learning-rate R   (the recipe's)
-  --heal K            quasi-Newton iterations of a healed state (6)
-  --pool N            scenes trained on in turn (40)
-  --tshirt-share P    share of T-shirt scenes (0.65)
-  --garment FILE      train on this T-shirt of data/assets alone
-  --seed S            (1)
-  --threads N         of LibTorch (1)
-  --device NAME       cpu or cuda (cpu)
-  --validate-every N  iterations (500)
-  --out DIR           checkpoint.pt, metrics.csv, weights.safetensors (out/train)
-  --resume            go on from the checkpoint in DIR
-)";
-
 struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "quick", loss;
@@ -54,72 +31,45 @@ struct Options {
     int heal = 0;
 };
 
-double to_number(const std::string& name, const std::string& text) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || *end != '\0')
-        throw cloth::ArgumentError(name, "'" + text + "' is not a number", "see train --help");
-    return value;
-}
-
-void set_option(Options& o, const std::string& name, const std::string& text) {
-    const auto number = [&] { return to_number(name, text); };
-    cloth::TrainerSettings& s = o.settings;
-    if (name == "--variant")
-        o.variant = text;
-    else if (name == "--recipe")
-        o.recipe = text;
-    else if (name == "--loss")
-        o.loss = text;
-    else if (name == "--minutes")
-        s.minutes = number();
-    else if (name == "--iterations")
-        s.iterations = static_cast<std::int64_t>(number());
-    else if (name == "--width")
-        o.width = static_cast<int>(number());
-    else if (name == "--steps")
-        o.steps = static_cast<int>(number());
-    else if (name == "--force-features")
-        o.force_features = number() != 0.0;
-    else if (name == "--learning-rate")
-        o.learning_rate = number();
-    else if (name == "--heal")
-        o.heal = static_cast<int>(number());
-    else if (name == "--pool")
-        s.pool = static_cast<int>(number());
-    else if (name == "--tshirt-share")
-        s.scenes.tshirt_share = number();
-    else if (name == "--garment")
-        s.scenes.garments = {text};
-    else if (name == "--seed")
-        s.seed = static_cast<std::uint64_t>(number());
-    else if (name == "--threads")
-        s.threads = static_cast<int>(number());
-    else if (name == "--device")
-        s.device = text;
-    else if (name == "--validate-every")
-        s.validate_every = static_cast<int>(number());
-    else if (name == "--out")
-        s.out = text;
-    else
-        throw cloth::ArgumentError(name, "is not an option", "see train --help");
-}
-
 Options parse(int count, char** arguments) {
     Options options;
-    for (int i = 1; i < count; ++i) {
-        const std::string name = arguments[i];
-        if (name == "--help") {
-            std::cout << usage;
-            std::exit(0);
-        }
-        if (name == "--resume") {
-            options.resume = true;
-            continue;
-        }
-        if (i + 1 == count) throw cloth::ArgumentError(name, "has no value", "see train --help");
-        set_option(options, name, arguments[++i]);
+    cloth::TrainerSettings& settings = options.settings;
+    std::string garment;
+    CLI::App app("train: trains a cloth network on the incremental potential, without ground truth",
+                 "train");
+    app.option_defaults()->take_last();
+    const auto add = [&app](const char* name, auto& value, const char* type,
+                            const char* description) {
+        app.add_option(name, value, description)->type_name(type);
+    };
+    add("--variant", options.variant, "NAME", "baseline, sampling, reduction or fast (fast)");
+    add("--recipe", options.recipe, "NAME",
+        "quick: an hour on a processor core; paper: FastClothGNN's (quick)");
+    add("--loss", options.loss, "NAME", "energy, log or both (the recipe's)");
+    add("--minutes", settings.minutes, "M", "wall time of the training");
+    add("--iterations", settings.iterations, "N", "end after so many iterations");
+    add("--width", options.width, "D", "latent size, a multiple of 16 trains fastest (128)");
+    add("--steps", options.steps, "L", "message passing steps (21)");
+    add("--force-features", options.force_features, "0|1",
+        "forces at x_t and at the guess as input (1)");
+    add("--learning-rate", options.learning_rate, "R", "(the recipe's)");
+    add("--heal", options.heal, "K", "quasi-Newton iterations of a healed state (6)");
+    add("--pool", settings.pool, "N", "scenes trained on in turn (40)");
+    add("--tshirt-share", settings.scenes.tshirt_share, "P", "share of T-shirt scenes (0.65)");
+    add("--garment", garment, "FILE", "train on this T-shirt of data/assets alone");
+    add("--seed", settings.seed, "S", "(1)");
+    add("--threads", settings.threads, "N", "of LibTorch (1)");
+    add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
+    add("--validate-every", settings.validate_every, "N", "iterations (500)");
+    add("--out", settings.out, "DIR",
+        "checkpoint.pt, metrics.csv, weights.safetensors (out/train)");
+    app.add_flag("--resume", options.resume, "go on from the checkpoint in DIR");
+    try {
+        app.parse(count, arguments);
+    } catch (const CLI::ParseError& error) {
+        std::exit(app.exit(error));  // help, or what is wrong
     }
+    if (!garment.empty()) settings.scenes.garments = {garment};
     return options;
 }
 

@@ -3,7 +3,7 @@
 namespace cloth {
 
 constexpr double touching = 1e-6;  // m
-constexpr int max_advances = 200;  // a path that creeps along the surface does not go through it
+constexpr int max_advances = 200;  // a path that follows the surface closely does not go through it
 
 static bool advance(const Obstacle& primitive, const Vec3& from, const Vec3& to,
                     PrimitiveHit& hit) {

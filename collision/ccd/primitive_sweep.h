@@ -1,6 +1,6 @@
 #pragma once
 
-#include "collision/geometry/primitives.h"
+#include "data/core/primitives.h"
 
 namespace cloth {
 

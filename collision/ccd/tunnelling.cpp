@@ -8,8 +8,8 @@
 #include "collision/ccd/fcl_sweep.h"
 #include "collision/ccd/primitive_sweep.h"
 #include "collision/geometry/gather_in_order.h"
-#include "collision/geometry/triangle.h"
 #include "collision/proximity/obstacle_trees.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 namespace {

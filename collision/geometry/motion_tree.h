@@ -9,7 +9,7 @@ namespace cloth {
 
 /// A hierarchy (FCL's, over the rest mesh) that holds for each node the box of its vertices and the
 /// box of their motions during a step. Two nodes are told apart by their relative motion, so what
-/// flies through the room together costs no more than what rests.
+/// moves together costs no more than what rests.
 class MotionTree {
  public:
     /// Coordinates in single precision from the tree's origin; the fourth lane, always zero, lets

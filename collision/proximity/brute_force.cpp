@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "collision/geometry/primitives.h"
-#include "collision/geometry/triangle.h"
+#include "data/core/primitives.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 
@@ -15,8 +15,8 @@ static std::array<Vec3, 3> corners_of(const TriMesh& mesh, Eigen::Index face) {
             Vec3(mesh.vertices.row(mesh.faces(face, 2)))};
 }
 
-SurfacePoint brute_force_closest(const TriMesh& mesh, const Vec3& q) {
-    SurfacePoint best;
+std::optional<SurfacePoint> brute_force_closest(const TriMesh& mesh, const Vec3& q) {
+    std::optional<SurfacePoint> best;
     double squared = std::numeric_limits<double>::infinity();
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
         const auto [a, b, c] = corners_of(mesh, f);
@@ -25,7 +25,8 @@ SurfacePoint brute_force_closest(const TriMesh& mesh, const Vec3& q) {
         if (!(hit.squared < squared)) continue;
         squared = hit.squared;
         const Vec3& w = hit.barycentric;
-        best = {static_cast<int>(f), w, w[0] * a + w[1] * b + w[2] * c, std::sqrt(squared)};
+        best = SurfacePoint{static_cast<int>(f), w, w[0] * a + w[1] * b + w[2] * c,
+                            std::sqrt(squared)};
     }
     return best;
 }
@@ -53,16 +54,16 @@ static Vec3 pseudonormal(const TriMesh& mesh, const std::vector<Vec3>& feature) 
 }
 
 double brute_force_signed_distance(const TriMesh& mesh, const Vec3& q) {
-    const SurfacePoint closest = brute_force_closest(mesh, q);
-    if (closest.face < 0) return std::numeric_limits<double>::infinity();
-    const auto corners = corners_of(mesh, closest.face);
+    const auto closest = brute_force_closest(mesh, q);
+    if (!closest) return std::numeric_limits<double>::infinity();
+    const auto corners = corners_of(mesh, closest->face);
     std::vector<Vec3> feature;
     for (int k = 0; k < 3; ++k)
-        if (closest.barycentric[k] != 0.0) feature.push_back(corners[size_t(k)]);
+        if (closest->barycentric[k] != 0.0) feature.push_back(corners[size_t(k)]);
     Vec3 normal;
     triangle_normal(corners[0], corners[1], corners[2], normal);
     if (feature.size() < 3) normal = pseudonormal(mesh, feature);
-    return (q - closest.point).dot(normal) < 0.0 ? -closest.distance : closest.distance;
+    return (q - closest->point).dot(normal) < 0.0 ? -closest->distance : closest->distance;
 }
 
 double brute_force_signed_distance(const Boundary& boundary, StepEnd end, const Vec3& q) {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "collision/geometry/fcl_hierarchy.h"
-#include "collision/geometry/triangle.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 
@@ -225,9 +225,10 @@ ClosestFaceTree::Eight ClosestFaceTree::box_entries(const Node& node, const Eige
     return (enter <= leave).select(enter, infinity);
 }
 
-int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
-                               double* distance, LimbSet ignored) const {
-    if (m_nodes.empty()) return -1;
+std::optional<RayHit> ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction,
+                                                 double length, Stack& stack,
+                                                 LimbSet ignored) const {
+    if (m_nodes.empty()) return std::nullopt;
     const Eigen::Vector3f local = (q - m_origin).cast<float>();
     Eigen::Vector3f inverse;
     for (int k = 0; k < 3; ++k) {
@@ -255,25 +256,17 @@ int ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction, double leng
             if (enter[slot] < infinity && (node.limbs[slot] & ~ignored) != 0)
                 *end++ = {node.child[slot], enter[slot] * 0.99999f};
     }
-    if (distance) *distance = nearest;
-    return face;
+    if (face < 0) return std::nullopt;
+    return RayHit{face, nearest};
 }
 
-/// Where the ray meets a face (Moeller and Trumbore 1997); infinity: it does not.
+/// Where the ray meets a face; infinity: it does not.
 double ClosestFaceTree::ray_distance(const Vec3& q, const Vec3& direction, int face) const {
-    constexpr double miss = std::numeric_limits<double>::infinity();
-    const Vec3 a = m_vertices.row((*m_faces)(face, 0));
-    const Vec3 ab = m_vertices.row((*m_faces)(face, 1)).transpose() - a;
-    const Vec3 ac = m_vertices.row((*m_faces)(face, 2)).transpose() - a;
-    const Vec3 across = direction.cross(ac);
-    const double volume = ab.dot(across);
-    if (volume == 0.0) return miss;
-    const Vec3 from = q - a;
-    const double u = from.dot(across) / volume;
-    const Vec3 turned = from.cross(ab);
-    const double v = direction.dot(turned) / volume;
-    const double at = ac.dot(turned) / volume;
-    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && at >= 0.0 ? at : miss;
+    const auto hit =
+        meet_line(q, direction, m_vertices.row((*m_faces)(face, 0)),
+                  m_vertices.row((*m_faces)(face, 1)), m_vertices.row((*m_faces)(face, 2)));
+    return hit && hit->is_inside() && hit->at >= 0.0 ? hit->at
+                                                     : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace cloth

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "data/core/boundary.h"
@@ -13,6 +14,12 @@ struct FaceHit {
     int face = -1;                    ///< -1: none within the radius
     Vec3 barycentric = Vec3::Zero();  ///< exactly zero for corners that do not span the feature
     double squared = 0.0;             ///< squared distance (m^2)
+};
+
+/// The face of a mesh that a ray meets first.
+struct RayHit {
+    int face = 0;
+    double distance = 0.0;  ///< along the ray (m)
 };
 
 /// Closest-face queries against a mesh whose vertices move.
@@ -49,12 +56,11 @@ class ClosestFaceTree {
     FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack,
                     LimbSet ignored = 0) const;
 
-    /// First face that the ray from `q` along the unit vector `direction` meets within `length`,
-    /// or -1. Where it meets an edge, either face or (rarely, by rounding) none may be reported.
-    /// @param distance  if not null, where it is (m)
+    /// First face that the ray from `q` along the unit vector `direction` meets within `length`.
+    /// Where it meets an edge, either face or (rarely, by rounding) none may be reported.
     /// @param ignored   limbs whose faces the ray passes through
-    int first_hit(const Vec3& q, const Vec3& direction, double length, Stack& stack,
-                  double* distance = nullptr, LimbSet ignored = 0) const;
+    std::optional<RayHit> first_hit(const Vec3& q, const Vec3& direction, double length,
+                                    Stack& stack, LimbSet ignored = 0) const;
 
     /// The set that holds a face's limb.
     LimbSet limb(int face) const {

@@ -34,8 +34,8 @@ bool LimbOverlap::learn_limbs(const Boundary& boundary) {
     if (m_found != m_known) {
         m_known = m_found;
         m_joined.fill(0);
-        m_home.clear();
-        m_buried = 0;
+        m_own.clear();
+        m_covered = 0;
         for (size_t k = 0; k < boundary.obstacles.size(); ++k)
             if (m_has_limbs[k]) add_joints(boundary.obstacles[k]);
     }
@@ -74,48 +74,48 @@ LimbSet LimbOverlap::limb_of(const Boundary& boundary, int vertex) const {
     return limb_at(boundary, m_near.obstacle[i], m_near.face[i]);
 }
 
-void LimbOverlap::find_homes(const Boundary& boundary, const Points& x) {
+void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
     const auto count = static_cast<size_t>(x.rows());
-    if (m_home.size() != count) {
-        m_home.assign(count, 0);
-        m_strangers.assign(count, 0);
+    if (m_own.size() != count) {
+        m_own.assign(count, 0);
+        m_unjoined.assign(count, 0);
         m_ignored.assign(count, 0);
         m_without.assign(count, 0);
         m_proximity.query(x, boundary, m_near);
-        m_near_home = m_near;
+        m_near_own = m_near;
     }
     m_rows.clear();
     for (size_t i = 0; i < count; ++i)
-        if (m_home[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
+        if (m_own[i] == 0) m_rows.push_back(static_cast<int>(i)), m_without[i] = 0;
     if (m_rows.empty()) return;
     m_proximity.query_rows(x, m_rows, boundary, m_near, StepEnd::start, {&m_without});
     for (const int i : m_rows) {
         const auto vertex = static_cast<size_t>(i);
-        m_home[vertex] = limb_of(boundary, i);
+        m_own[vertex] = limb_of(boundary, i);
         for (size_t limb = 0; limb < max_limbs; ++limb)
-            if (m_home[vertex] == only(limb)) m_strangers[vertex] = ~m_joined[limb];
+            if (m_own[vertex] == only(limb)) m_unjoined[vertex] = ~m_joined[limb];
     }
 }
 
-/// Whether the vertex is outside of the limb in m_near, with room between limb and home.
+/// Whether the vertex is outside of the limb in m_near, with room between limb and own limb.
 bool LimbOverlap::is_clear(int vertex, LimbSet limb, StepEnd end) {
     if (m_near.distance[vertex] > m_settings.reach) return true;
     if (m_near.distance[vertex] < m_settings.margin) return false;
-    const bool folded = (m_strangers[static_cast<size_t>(vertex)] & limb) == 0;
+    const bool folded = (m_unjoined[static_cast<size_t>(vertex)] & limb) == 0;
     const LimbSet own = folded ? limb : joined(limb);
-    if (m_proximity.cover(m_near, vertex, end, own).depth > 0.0) return false;
-    if (!m_near_home.has(vertex)) return true;
+    if (m_proximity.cover(m_near, vertex, end, own)) return false;
+    if (!m_near_own.has(vertex)) return true;
     const bool start = end == StepEnd::start;
-    const Vec3 home = (start ? m_near_home.point0 : m_near_home.point1).row(vertex);
+    const Vec3 own_point = (start ? m_near_own.point0 : m_near_own.point1).row(vertex);
     const Vec3 point = (start ? m_near.point0 : m_near.point1).row(vertex);
-    return (home - point).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
+    return (own_point - point).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
 }
 
 /// Marks the limbs that are not clear of vertices which ignore them.
 void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
     for (size_t limb = 0; limb < max_limbs; ++limb) {
         m_rows.clear();
-        for (size_t i = 0; i < m_home.size(); ++i)
+        for (size_t i = 0; i < m_own.size(); ++i)
             if ((m_ignored[i] & ~m_keep[i] & only(limb)) != 0) {
                 m_rows.push_back(static_cast<int>(i));
                 m_without[i] = ~only(limb);
@@ -133,26 +133,26 @@ bool LimbOverlap::ignores_nothing() const {
                        [](LimbSet limbs) { return limbs == 0; });
 }
 
-/// Lets vertices touch what they are clear of, at both ends; m_near_home is to be of the start.
+/// Lets vertices touch what they are clear of, at both ends; m_near_own is to be of the start.
 void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
     if (ignores_nothing()) return;
-    m_keep.assign(m_home.size(), 0);
+    m_keep.assign(m_own.size(), 0);
     keep(boundary, x0, StepEnd::start);
     keep(boundary, x1, StepEnd::end);
     LimbSet kept = 0;
-    for (size_t i = 0; i < m_home.size(); ++i) {
+    for (size_t i = 0; i < m_own.size(); ++i) {
         m_ignored[i] &= m_keep[i];
         kept |= m_keep[i];
     }
-    m_buried &= kept;
+    m_covered &= kept;
 }
 
 /// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
-void LimbOverlap::find_buried(const Boundary& boundary, const Points& x, StepEnd end) {
+void LimbOverlap::find_covered(const Boundary& boundary, const Points& x, StepEnd end) {
     m_rows.clear();
-    for (size_t i = 0; i < m_home.size(); ++i) {
-        m_without[i] = ~m_strangers[i] | m_ignored[i];
-        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    for (size_t i = 0; i < m_own.size(); ++i) {
+        m_without[i] = ~m_unjoined[i] | m_ignored[i];
+        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
     }
     while (!m_rows.empty()) {
         m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
@@ -162,33 +162,33 @@ void LimbOverlap::find_buried(const Boundary& boundary, const Points& x, StepEnd
             if (limb == 0) continue;
             m_without[static_cast<size_t>(i)] |= limb;
             m_next.push_back(i);
-            if (m_proximity.cover(m_near, i, end, joined(limb)).depth > 0.0) m_buried |= limb;
+            if (m_proximity.cover(m_near, i, end, joined(limb))) m_covered |= limb;
         }
         m_rows.swap(m_next);
     }
 }
 
-void LimbOverlap::ignore_buried() {
-    if (m_buried == 0) return;
-    for (size_t i = 0; i < m_home.size(); ++i) m_ignored[i] |= m_buried & m_strangers[i];
+void LimbOverlap::ignore_covered() {
+    if (m_covered == 0) return;
+    for (size_t i = 0; i < m_own.size(); ++i) m_ignored[i] |= m_covered & m_unjoined[i];
 }
 
-/// Lets vertices that are inside a joined limb ignore it where it lies over the skin at home, which
-/// m_near_home then holds.
+/// Lets vertices that are inside a joined limb ignore it where it lies over their own limb's skin,
+/// which m_near_own then holds.
 void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
     m_rows.clear();
-    for (size_t i = 0; i < m_home.size(); ++i) {
-        m_without[i] = ~m_home[i];
-        if (m_home[i] != 0) m_rows.push_back(static_cast<int>(i));
+    for (size_t i = 0; i < m_own.size(); ++i) {
+        m_without[i] = ~m_own[i];
+        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
     }
-    m_proximity.query_rows(x, m_rows, boundary, m_near_home, end, {&m_without, m_settings.reach});
+    m_proximity.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
     m_next.clear();
     for (const int i : m_rows) {
         const auto vertex = static_cast<size_t>(i);
-        const LimbSet not_joined = m_home[vertex] | m_strangers[vertex];
-        const Cover cover = m_proximity.cover(m_near_home, i, end, not_joined);
-        if (!(cover.depth > m_settings.least_cover)) continue;
-        m_without[vertex] = ~limb_at(boundary, m_near_home.obstacle[vertex], cover.face);
+        const LimbSet not_joined = m_own[vertex] | m_unjoined[vertex];
+        const auto cover = m_proximity.cover(m_near_own, i, end, not_joined);
+        if (!cover || !(cover->depth > m_settings.least_cover)) continue;
+        m_without[vertex] = ~limb_at(boundary, m_near_own.obstacle[vertex], cover->face);
         m_next.push_back(i);
     }
     m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});
@@ -202,15 +202,15 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
         m_ignored.clear();
         return boundary;
     }
-    find_homes(boundary, state.x);
+    find_own_limbs(boundary, state.x);
     m_x = state.x + dt * state.v;
-    find_buried(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
-    ignore_buried();
+    find_covered(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
+    ignore_covered();
     ignore_folded(boundary, state.x, StepEnd::start);
     release(boundary, state.x, m_x);
     ignore_folded(boundary, m_x, StepEnd::end);
-    find_buried(boundary, m_x, StepEnd::end);
-    ignore_buried();
+    find_covered(boundary, m_x, StepEnd::end);
+    ignore_covered();
     if (ignores_nothing()) return boundary;
     m_boundary = boundary;
     m_boundary.ignored_limbs = m_ignored;

@@ -13,8 +13,8 @@ struct LimbOverlapSettings {
     double reach = 0.05;   ///< limbs farther from a vertex (m) are not looked at, 0.01 to 0.1
     double margin = 0.01;  ///< a limb that was ignored is touched again when it is clear of the
                            ///< vertex by this (m), 1e-3 to 0.05
-    double least_cover = 0.01;  ///< of a joined limb (m) over the skin of a vertex's home, for it
-                                ///< to be ignored, 0 to 0.2
+    double least_cover = 0.01;  ///< of a joined limb (m) over the skin of a vertex's own limb, for
+                                ///< it to be ignored, 0 to 0.2
 };
 
 /// How far cloth is inside limbs that it ignores.
@@ -28,12 +28,12 @@ struct IgnoredDepth {
 /// is pushed out of one into the other, ends on the wrong side of the thinner one, and is dragged
 /// along when they part. So there cloth keeps to the limb that it belongs to:
 ///
-/// - A vertex is at home on the limb that it first came near.
-/// - A limb is buried while its skin near the cloth lies inside another one that is not joined to
-///   it, and until the cloth has come clear of it. Cloth that is not at home on it, nor on a limb
-///   that is joined to it, ignores it.
+/// - A vertex belongs to the limb that it first came near: its own limb.
+/// - A limb is covered while its skin near the cloth lies inside another one that is not joined to
+///   it, and until the cloth has come clear of it. Cloth that belongs neither to it nor to a limb
+///   that is joined to it ignores it.
 /// - Limbs that are joined always meet, as in an armpit. There a vertex that has come inside
-///   the other limb ignores it where it lies over the skin at home, until it is clear of it.
+///   the other limb ignores it where it lies over its own limb's skin, until it is clear of it.
 ///
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
@@ -65,12 +65,12 @@ class LimbOverlap {
 
     bool learn_limbs(const Boundary& boundary);
     void add_joints(const Obstacle& obstacle);
-    void find_homes(const Boundary& boundary, const Points& x);
+    void find_own_limbs(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);
     void keep(const Boundary& boundary, const Points& x, StepEnd end);
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
-    void find_buried(const Boundary& boundary, const Points& x, StepEnd end);
-    void ignore_buried();
+    void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
+    void ignore_covered();
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
     bool ignores_nothing() const;
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
@@ -83,13 +83,13 @@ class LimbOverlap {
     std::vector<char> m_has_limbs;                 ///< each obstacle of the last step
     std::vector<Limbs> m_known, m_found;           ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
-    LimbSet m_buried = 0;
-    std::vector<LimbSet> m_home;       ///< |V|: 0: has not come near any limb yet
-    std::vector<LimbSet> m_strangers;  ///< |V|: limbs that are not joined to its home; 0: no home
-    std::vector<LimbSet> m_ignored;    ///< |V|
-    std::vector<LimbSet> m_keep;       ///< |V|: limbs that are not clear of the vertex
-    std::vector<LimbSet> m_without;    ///< |V|: limbs that a query passes over
-    SurfaceContacts m_near, m_near_home;
+    LimbSet m_covered = 0;
+    std::vector<LimbSet> m_own;       ///< |V|: 0: has not come near any limb yet
+    std::vector<LimbSet> m_unjoined;  ///< |V|: limbs not joined to its own; 0: it has no own limb
+    std::vector<LimbSet> m_ignored;   ///< |V|
+    std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
+    std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over
+    SurfaceContacts m_near, m_near_own;
     std::vector<int> m_rows, m_next;
     VectorX m_depth;      ///< |V| (m): inside limbs that are ignored
     Points m_x;           ///< |V| x 3 (m): where the vertices are heading

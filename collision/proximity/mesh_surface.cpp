@@ -5,8 +5,8 @@
 #include <map>
 #include <numeric>
 
-#include "collision/geometry/triangle.h"
 #include "data/core/mesh.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 
@@ -80,15 +80,14 @@ Vec3 MeshSurface::normal(int face) const {
     return normal;
 }
 
-Cover MeshSurface::cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack,
-                         LimbSet ignored) const {
+std::optional<Cover> MeshSurface::cover(const Vec3& point, int face, double length,
+                                        ClosestFaceTree::Stack& stack, LimbSet ignored) const {
     constexpr double start = 1e-5;  // m: off the face itself
     const Vec3 up = normal(face);
-    if (up.isZero(0.0)) return {};
-    double at = 0.0;
-    const int hit = m_tree.first_hit(point + start * up, up, length, stack, &at, ignored);
-    if (hit < 0 || !(normal(hit).dot(up) > 0.0)) return {};
-    return {at, hit};
+    if (up.isZero(0.0)) return std::nullopt;
+    const auto hit = m_tree.first_hit(point + start * up, up, length, stack, ignored);
+    if (!hit || !(hit->distance > 0.0) || !(normal(hit->face).dot(up) > 0.0)) return std::nullopt;
+    return Cover{hit->distance, hit->face};
 }
 
 static double signed_root(double squared, bool negative) {
@@ -108,7 +107,7 @@ SurfaceHit MeshSurface::on_face(const FaceHit& hit, const Vec3& away) const {
 static double corner_angle(const std::array<Vec3, 3>& corners, int pivot) {
     const Vec3 u = corners[size_t((pivot + 1) % 3)] - corners[size_t(pivot)];
     const Vec3 v = corners[size_t((pivot + 2) % 3)] - corners[size_t(pivot)];
-    return std::atan2(u.cross(v).norm(), u.dot(v));
+    return angle_between(u, v);
 }
 
 int MeshSurface::corner_at(int face, int vertex) const {

@@ -55,8 +55,8 @@ class MeshSurface {
     /// The part of the mesh that lies over a point of a face, along its normal; nothing, if what
     /// the ray along the normal meets first (within `length`) is seen from outside.
     /// @param ignored  limbs that the ray passes through
-    Cover cover(const Vec3& point, int face, double length, ClosestFaceTree::Stack& stack,
-                LimbSet ignored = 0) const;
+    std::optional<Cover> cover(const Vec3& point, int face, double length,
+                               ClosestFaceTree::Stack& stack, LimbSet ignored = 0) const;
 
     const std::shared_ptr<const Faces>& faces() const { return m_faces; }
     const Points& vertices() const { return m_tree.vertices(); }

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "collision/geometry/faces_in_range.h"
-#include "collision/geometry/primitives.h"
-#include "collision/geometry/triangle.h"
 #include "collision/proximity/mesh_surface.h"
 #include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
+#include "data/core/primitives.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 
@@ -273,16 +273,16 @@ void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const 
         [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 
-Cover Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
-                       LimbSet ignored) {
+std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i,
+                                      StepEnd chosen_at, LimbSet ignored) {
     constexpr double length = 0.5;  // m: thicker than any limb
-    if (!contacts.has(i)) return {};
+    if (!contacts.has(i)) return std::nullopt;
     const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
     for (const Target& target : m_impl->targets)
         if (target.index == contacts.obstacle[size_t(i)] && target.surface)
             return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
                                          m_impl->stacks[0], ignored);
-    return {};
+    return std::nullopt;
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,

@@ -3,6 +3,7 @@
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "data/core/boundary.h"
@@ -12,7 +13,7 @@ namespace cloth {
 /// Contact of a point within a garment's face, or on its edge, with an obstacle: the tangent plane
 /// of the surface point that was closest at t, at t + dt. See RidgeFinder.
 struct RidgeContact {
-    int face = -1;                 ///< of the garment
+    int face = 0;                  ///< of the garment
     std::array<double, 3> weight;  ///< of the face's corners, 0 to 1
     Vec3 normal;                   ///< unit, outward
     double height = 0.0;           ///< of the plane: surface point . normal (m)
@@ -55,8 +56,8 @@ struct QueryLimits {
 
 /// What lies over a surface point of a mesh, see Proximity::cover().
 struct Cover {
-    double depth = 0.0;  ///< how much of it (m, along the normal); 0: nothing
-    int face = -1;       ///< its face on the far side, -1: nothing
+    double depth = 0.0;  ///< how much of it (m, along the normal), above 0
+    int face = 0;        ///< its face on the far side
 };
 
 /// Nearest-point queries against the obstacles of a Boundary, on FCL's bounding volume hierarchies.
@@ -105,8 +106,8 @@ class Proximity {
     /// The part of its own mesh that lies over row i's surface point, up to half a metre. To be
     /// asked right after the query, for the same end.
     /// @param ignored  limbs that do not count
-    Cover cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
-                LimbSet ignored = 0);
+    std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                               LimbSet ignored = 0);
 
     /// Meshes that are remembered at present.
     int cached_meshes() const;

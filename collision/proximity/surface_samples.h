@@ -13,9 +13,9 @@ namespace cloth {
 /// out.
 ///
 /// Only samples that can be deep are searched for: the signed distance changes by no more than a
-/// point moves, so vertices that are far enough outside vouch for the centre of their face, and
-/// that centre, which is nearer to the midpoints than any vertex, for the midpoints of its edges.
-/// Where skins face each other nobody vouches: parts of a body may overlap there, and where they do
+/// point moves, so the distances of its vertices bound that of a face's centre, and the centre's,
+/// which is nearer to the midpoints than any vertex, those of its edges' midpoints. Where skins
+/// face each other there are no such bounds: parts of a body may overlap there, and where they do
 /// the sign of the distance jumps.
 class SurfaceSamples {
  public:

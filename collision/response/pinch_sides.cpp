@@ -9,19 +9,19 @@ namespace cloth {
 
 constexpr double opposite = -0.3;        // cosine of skins that face away from each other
 constexpr double slab = -0.9;            // cosine of skins between which there is no ridge
-constexpr double far_away = 2e-2;        // m: skins further from a vertex say nothing about it
-constexpr double loyal_weight = 1000.0;  // votes of a vertex that has been drawn to its side
+constexpr double far_away = 2e-2;        // m: skins further from a vertex do not count
+constexpr double drawn_weight = 1000.0;  // vertices that a vertex which was drawn counts for
 
 PinchSides::PinchSides(Eigen::Index vertex_count)
     : m_parent(static_cast<size_t>(vertex_count), 0),
-      m_loyal(static_cast<size_t>(vertex_count), 0),
-      m_voted(static_cast<size_t>(vertex_count), 0),
+      m_drawn(static_cast<size_t>(vertex_count), 0),
+      m_counted(static_cast<size_t>(vertex_count), 0),
       m_reference(Points::Zero(vertex_count, 3)),
       m_balance(VectorX::Zero(vertex_count)) {
 }
 
 void PinchSides::begin_frame() {
-    std::fill(m_loyal.begin(), m_loyal.end(), 0);
+    std::fill(m_drawn.begin(), m_drawn.end(), 0);
 }
 
 static bool stands_near(const SurfaceContacts& contacts, int vertex) {
@@ -73,7 +73,7 @@ void PinchSides::connect(const SurfaceSamples& samples, const std::vector<int>& 
     for (const int sample : pinched)
         for (const int i : samples.corners(sample).vertex) {
             m_parent[static_cast<size_t>(i)] = i;
-            m_voted[static_cast<size_t>(i)] = 0;
+            m_counted[static_cast<size_t>(i)] = 0;
             m_reference.row(i).setZero();
             m_balance[i] = 0.0;
         }
@@ -86,17 +86,17 @@ void PinchSides::connect(const SurfaceSamples& samples, const std::vector<int>& 
     }
 }
 
-void PinchSides::vote(const SurfaceSamples& samples, const std::vector<int>& pinched,
-                      const Points& x, const SurfaceContacts& contacts) {
+void PinchSides::count_sides(const SurfaceSamples& samples, const std::vector<int>& pinched,
+                             const Points& x, const SurfaceContacts& contacts) {
     for (const int sample : pinched)
         for (const int i : samples.corners(sample).vertex) {
-            if (m_voted[static_cast<size_t>(i)] || !stands_near(contacts, i)) continue;
-            m_voted[static_cast<size_t>(i)] = 1;
+            if (m_counted[static_cast<size_t>(i)] || !stands_near(contacts, i)) continue;
+            m_counted[static_cast<size_t>(i)] = 1;
             const int patch = root(i);
             const Vec3 normal = outward(contacts, i, x);
             if (m_reference.row(patch).isZero(0.0)) m_reference.row(patch) = normal;
             const double side = m_reference.row(patch).dot(normal) >= 0.0 ? 1.0 : -1.0;
-            m_balance[patch] += side * (m_loyal[static_cast<size_t>(i)] ? loyal_weight : 1.0);
+            m_balance[patch] += side * (m_drawn[static_cast<size_t>(i)] ? drawn_weight : 1.0);
         }
 }
 
@@ -104,7 +104,7 @@ void PinchSides::add_planes(const SurfaceSamples& samples, const std::vector<int
                             const Points& x, const SurfaceContacts& contacts, double distance,
                             double allowed_depth, PlanePush& push, std::vector<char>& drawn) {
     connect(samples, pinched);
-    vote(samples, pinched, x, contacts);
+    count_sides(samples, pinched, x, contacts);
     for (const int sample : pinched) {
         const SurfaceSamples::Corners at = samples.corners(sample);
         const int patch = root(at.vertex[0]);
@@ -123,7 +123,7 @@ void PinchSides::add_planes(const SurfaceSamples& samples, const std::vector<int
             if (!stands_near(contacts, i) || outward(contacts, i, x).dot(normal) >= opposite)
                 continue;
             push.add({i, i, i}, {1.0, 0.0, 0.0}, normal, normal.dot(point) + distance);
-            m_loyal[static_cast<size_t>(i)] = drawn[static_cast<size_t>(i)] = 1;
+            m_drawn[static_cast<size_t>(i)] = drawn[static_cast<size_t>(i)] = 1;
         }
     }
 }

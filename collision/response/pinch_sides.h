@@ -18,7 +18,7 @@ namespace cloth {
 ///                  `-- b
 ///
 /// All samples of one patch go to the side on which most of its vertices are. Vertices of the other
-/// side are drawn through the slab, and vote for their new side until the frame is resolved.
+/// side are drawn through the slab, and count for their new side until the frame is resolved.
 class PinchSides {
  public:
     explicit PinchSides(Eigen::Index vertex_count);
@@ -48,14 +48,14 @@ class PinchSides {
  private:
     int root(int vertex);
     void connect(const SurfaceSamples& samples, const std::vector<int>& pinched);
-    void vote(const SurfaceSamples& samples, const std::vector<int>& pinched, const Points& x,
-              const SurfaceContacts& contacts);
+    void count_sides(const SurfaceSamples& samples, const std::vector<int>& pinched,
+                     const Points& x, const SurfaceContacts& contacts);
 
-    std::vector<int> m_parent;  ///< |V|: patches as trees
-    std::vector<char> m_loyal;  ///< |V|: was drawn to its side in this frame
-    std::vector<char> m_voted;  ///< |V|
+    std::vector<int> m_parent;    ///< |V|: patches as trees
+    std::vector<char> m_drawn;    ///< |V|: was drawn to its side in this frame
+    std::vector<char> m_counted;  ///< |V|
     Points m_reference;  ///< |V| x 3: of roots: a normal of the patch, zero before it has one
-    VectorX m_balance;   ///< |V|: of roots: votes for the reference's side - for the other
+    VectorX m_balance;   ///< |V|: of roots: vertices on the reference's side - on the other
 };
 
 }  // namespace cloth

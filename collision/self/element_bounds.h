@@ -8,7 +8,7 @@
 namespace cloth {
 
 /// Spheres around the elements of a garment and around their motions: tells most pairs of elements
-/// that cannot be a SelfPair apart at the price of a few multiplications.
+/// that cannot be a SelfPair apart by a few multiplications.
 class ElementBounds {
  public:
     /// @param x, motion  |V| x 3 (m)

@@ -2,11 +2,11 @@
 
 namespace cloth {
 
-/// Whether and how the layers of a garment keep off each other. Off by default: then nothing of it
+/// Contact of a garment with itself and between merged garments. Off by default: then nothing of it
 /// is built or run.
 struct SelfContactSettings {
-    double thickness = 0.0;  ///< distance that layers keep (m), 1e-3 to 2e-2; 0: off. Above half an
-                             ///< edge's length folds become stiff
+    double thickness = 0.0;  ///< distance that cloth keeps from cloth (m), 1e-3 to 2e-2; 0: off.
+                             ///< Above half an edge's length folds become stiff
     double weight = 5e5;     ///< w in w max(0, thickness - d)^3 per vertex (N/m^2), 1e3 to 1e6
     int rounds =
         8;  ///< of search and push in contact projection, 0 to 100; 0: no contact projection

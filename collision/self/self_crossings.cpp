@@ -10,7 +10,7 @@ namespace {
 
 constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
 constexpr double touching = 1e-6;     // m: nearer than this is a touch
-constexpr int max_advances = 200;     // elements that creep along each other are taken to touch
+constexpr int max_advances = 200;  // elements that slide closely along each other count as touching
 
 /// Longest way (m) that two points of the elements can come nearer in the whole step; the mean of
 /// the motions, which changes no distance, is taken off.

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "collision/geometry/segment.h"
-#include "collision/geometry/triangle.h"
+#include "data/core/triangle.h"
 
 namespace cloth {
 namespace {

@@ -28,7 +28,7 @@ struct SelfPair {
     }
 };
 
-/// Layers of one garment that are near each other, or are about to be.
+/// Parts of one garment that are near each other, or are about to be.
 ///
 ///     SelfProximity proximity(garment, 4e-3);
 ///     proximity.find(state.x, dt * state.v, 4e-3 + slack, threads);

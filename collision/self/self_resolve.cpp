@@ -14,7 +14,7 @@ constexpr int sweeps = 40;              // of PlanePush in each round
 constexpr double most = 3.0;            // see PlanePush::solve
 constexpr double growth = 0.03;         // of edges near what is pushed, as in ContactProjection
 constexpr double hold_distance = 1e-2;  // m: vertices further from obstacles need no holding
-constexpr double gap_share = 0.25;      // of the thickness, at which layers are left
+constexpr double gap_share = 0.25;      // of the thickness, at which cloth is left
 constexpr int zone_rounds = 50;         // each joins zones that touch, so they end
 constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
                                         // nothing cannot be told from elements that touch

@@ -19,7 +19,7 @@ struct SelfResolveReport {
     int left = 0;       ///< pairs that still pass, such as between pins that cross
 };
 
-/// Contact projection of a step against layers that pass through each other: pairs of elements that
+/// Contact projection of a step for cloth that passes through itself: pairs of elements that
 /// would do so between t and t + dt are put back on the side that they come from.
 ///
 ///     SelfResolver resolver(garment, settings);

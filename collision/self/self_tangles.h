@@ -18,7 +18,7 @@ struct Tangle {
 bool edge_crosses_face(const Vec3& p0, const Vec3& p1, const Vec3& a, const Vec3& b, const Vec3& c,
                        Vec3& point);
 
-/// Finds where a garment passes through itself, or its pieces through each other. Two layers that
+/// Finds where a garment passes through itself, or its pieces through each other. Surfaces that
 /// cross along a line tangle in each edge that the line cuts.
 ///
 ///     SelfTangles tangles(garment);

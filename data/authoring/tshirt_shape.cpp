@@ -187,8 +187,8 @@ TriMesh tshirt_surface(const TriMesh& body, const TshirtRecipe& recipe) {
         double value = torso(p);
         for (double side : kMirrorX) value = smooth_union(value, sleeve(mirrored(p, side)), 0.035);
         if (value > 0.0 && value < 0.05) {
-            const NearestPoint near = skin.nearest(p, 0.04);
-            if (near.face >= 0) value = smooth_union(value, near.distance - skin_gap, 0.01);
+            if (const auto near = skin.nearest_within(0.04, p))
+                value = smooth_union(value, near->distance - skin_gap, 0.01);
         }
         return value;
     };

@@ -74,7 +74,7 @@ class CharacterReader {
             fail(std::string("node ") + node.mName.C_Str(), "its transform is not finite",
                  "export it again");
         m_nodes.try_emplace(node.mName.C_Str(), index);
-        m_rig.nodes.push_back({parent, to_eigen(node.mTransformation), -1});
+        m_rig.nodes.push_back({parent, to_eigen(node.mTransformation), std::nullopt});
         for (unsigned i = 0; i < node.mNumChildren; ++i) add_nodes(*node.mChildren[i], index);
     }
 

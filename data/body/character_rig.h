@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct CharacterTrack {
 struct CharacterNode {
     int parent = -1;                                     ///< parents come first
     Eigen::Affine3d rest = Eigen::Affine3d::Identity();  ///< relative to the parent
-    int track = -1;                                      ///< -1: it does not move
+    std::optional<int> track;                            ///< none: it does not move
 };
 
 /// What skin weights refer to: a node, and the map from the mesh's frame to the node's at binding.

@@ -12,7 +12,7 @@ namespace {
 constexpr int kRounds = 60;
 constexpr double kMargin = 1e-4;  // beyond the clearance, so that the rounds come to an end (m)
 
-/// What the vertices want to move by, so that a probe point gets clear of the body.
+/// What the vertices have to move by, so that a probe point gets clear of the body.
 struct Wishes {
     Points move;
     double smallest = std::numeric_limits<double>::infinity();
@@ -44,7 +44,7 @@ Wishes collect_wishes(const TriMesh& mesh, const std::vector<std::array<int, 2>>
     return wishes;
 }
 
-/// Vertices move at least as they wish, and half as much as their neighbours do.
+/// Vertices move at least by that, and half as much as their neighbours do.
 Points spread(const Points& move, const std::vector<std::array<int, 2>>& edges) {
     Points sum = Points::Zero(move.rows(), 3);
     VectorX count = VectorX::Zero(move.rows());

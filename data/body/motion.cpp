@@ -68,9 +68,10 @@ MotionFrame interpolate(const MotionFrame& a, const MotionFrame& b, double s) {
 
 }  // namespace
 
-int Skeleton::find(const std::string& name) const {
+std::optional<int> Skeleton::find(const std::string& name) const {
     const auto it = std::find(names.begin(), names.end(), name);
-    return it == names.end() ? -1 : static_cast<int>(it - names.begin());
+    if (it == names.end()) return std::nullopt;
+    return static_cast<int>(it - names.begin());
 }
 
 Motion resample(const Motion& motion, double fps) {

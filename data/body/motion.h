@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ struct Skeleton {
     Points end_offsets;        ///< |joints| x 3 (m): to the joint's end site; zero if it has none
 
     int joint_count() const { return static_cast<int>(names.size()); }
-    /// Index of the joint called `name`, -1 if there is none.
-    int find(const std::string& name) const;
+    /// Index of the joint called `name`, if there is one.
+    std::optional<int> find(const std::string& name) const;
 };
 
 struct MotionFrame {

@@ -54,29 +54,32 @@ Figure hip_knee_figure() {
     return figure;
 }
 
-/// Motion joint for each body joint, -1 if the figure has none; the missing names go to `missing`.
-std::vector<int> match(const Body& body, const Skeleton& skeleton, const Figure& figure,
-                       std::vector<std::string>& missing) {
-    std::vector<int> matches;
+/// For each body joint the motion's, if the figure has one.
+using JointMatches = std::vector<std::optional<int>>;
+
+/// The missing names go to `missing`.
+JointMatches match(const Body& body, const Skeleton& skeleton, const Figure& figure,
+                   std::vector<std::string>& missing) {
+    JointMatches matches;
     for (const Joint& joint : body.joints()) {
         const auto renamed = figure.names.find(joint.name);
         const std::string name = renamed == figure.names.end() ? joint.name : renamed->second;
-        matches.push_back(name.empty() ? -1 : skeleton.find(name));
-        if (!name.empty() && matches.back() < 0) missing.push_back(name);
+        matches.push_back(name.empty() ? std::nullopt : skeleton.find(name));
+        if (!name.empty() && !matches.back()) missing.push_back(name);
     }
     return matches;
 }
 
 struct Match {
     Figure figure;
-    std::vector<int> joints;  ///< per body joint
+    JointMatches joints;
 };
 
 Match find_figure(const Body& body, const Motion& motion) {
     std::vector<std::string> fewest;
     for (const Figure& figure : {cmu_figure(), hip_knee_figure()}) {
         std::vector<std::string> missing;
-        std::vector<int> joints = match(body, motion.skeleton, figure, missing);
+        JointMatches joints = match(body, motion.skeleton, figure, missing);
         if (missing.empty()) return {figure, std::move(joints)};
         if (fewest.empty() || missing.size() < fewest.size()) fewest = missing;
     }
@@ -90,7 +93,7 @@ Match find_figure(const Body& body, const Motion& motion) {
 /// Rest directions of the figure's limbs: from a joint to the joint of the next limb.
 class FigureRest {
  public:
-    FigureRest(const Body& body, const Motion& motion, const std::vector<int>& joints)
+    FigureRest(const Body& body, const Motion& motion, const JointMatches& joints)
         : m_body(body), m_joints(joints) {
         MotionFrame rest;
         rest.rotations.assign(motion.skeleton.joint_count(), Quaterniond::Identity());
@@ -98,7 +101,7 @@ class FigureRest {
     }
 
     Vec3 position(const std::string& name) const {
-        return m_positions.row(m_joints[m_body.joint(name)]);
+        return m_positions.row(m_joints[m_body.joint(name)].value());
     }
     Vec3 direction(const std::string& from, const std::string& to) const {
         return position(to) - position(from);
@@ -109,7 +112,7 @@ class FigureRest {
 
  private:
     const Body& m_body;
-    const std::vector<int>& m_joints;
+    const JointMatches& m_joints;
     Points m_positions;
 };
 
@@ -158,13 +161,13 @@ Quaterniond undo_heading(const Quaterniond& hips) {
 }
 
 /// World rotations of the body's joints; joints without counterpart follow their parents.
-std::vector<Quaterniond> body_rotations(const Body& body, const std::vector<int>& matches,
+std::vector<Quaterniond> body_rotations(const Body& body, const JointMatches& matches,
                                         const std::vector<Quaterniond>& align,
                                         const std::vector<Quaterniond>& motion_world) {
     std::vector<Quaterniond> world(matches.size());
     for (size_t j = 0; j < matches.size(); ++j)
-        world[j] = matches[j] < 0 ? world[body.joints()[j].parent]
-                                  : (motion_world[matches[j]] * align[j]).normalized();
+        world[j] = matches[j] ? (motion_world[*matches[j]] * align[j]).normalized()
+                              : world[body.joints()[j].parent];
     return world;
 }
 

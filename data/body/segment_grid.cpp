@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "data/core/triangle.h"
+
 namespace cloth {
 
 SegmentGrid::SegmentGrid(const Points& vertices, const Faces& faces, double cell)
@@ -74,21 +76,11 @@ bool SegmentGrid::hits(const Vec3& from, const Vec3& to) const {
     return false;
 }
 
-/// Moeller and Trumbore 1997.
 bool SegmentGrid::face_hits(int face, const Vec3& from, const Vec3& way) const {
-    const Vec3 a = m_vertices.row(m_faces(face, 0));
-    const Vec3 ab = m_vertices.row(m_faces(face, 1)).transpose() - a;
-    const Vec3 ac = m_vertices.row(m_faces(face, 2)).transpose() - a;
-    const Vec3 p = way.cross(ac);
-    const double determinant = ab.dot(p);
-    if (std::abs(determinant) < 1e-30) return false;
-    const Vec3 offset = from - a;
-    const double u = offset.dot(p) / determinant;
-    const Vec3 q = offset.cross(ab);
-    const double v = way.dot(q) / determinant;
-    const double t = ac.dot(q) / determinant;
     constexpr double slack = 1e-9;  // no gap between neighbours for a segment along their edge
-    return u >= -slack && v >= -slack && u + v <= 1.0 + slack && t >= 0.0 && t <= 1.0;
+    const auto hit = meet_line(from, way, m_vertices.row(m_faces(face, 0)),
+                               m_vertices.row(m_faces(face, 1)), m_vertices.row(m_faces(face, 2)));
+    return hit && hit->is_inside(slack) && hit->at >= 0.0 && hit->at <= 1.0;
 }
 
 }  // namespace cloth

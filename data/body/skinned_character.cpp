@@ -41,8 +41,8 @@ SkinnedCharacter::SkinnedCharacter(const std::string& path, const CharacterSetti
 }
 
 Eigen::Affine3d SkinnedCharacter::local_transform(const CharacterNode& node, double time) const {
-    if (node.track < 0) return node.rest;
-    const CharacterTrack& track = m_rig.tracks[node.track];
+    if (!node.track) return node.rest;
+    const CharacterTrack& track = m_rig.tracks[*node.track];
     return Eigen::Translation3d(sample(track.position_times, track.positions, time)) *
            sample(track.rotation_times, track.rotations, time) *
            Eigen::Scaling(sample(track.scale_times, track.scales, time));

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "data/core/pose.h"
 #include "data/core/types.h"
 
 namespace cloth {
-
-using Pose = Eigen::Isometry3d;
 
 /// A set of limbs of obstacles: bit k is limb k.
 using LimbSet = std::uint32_t;

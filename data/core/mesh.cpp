@@ -31,12 +31,22 @@ Points face_normals(const Points& vertices, const Faces& faces) {
     return normals;
 }
 
-Points vertex_normals(const Points& vertices, const Faces& faces) {
-    const Points areas = face_area_vectors(vertices, faces);
-    Points normals = Points::Zero(vertices.rows(), 3);
-    for (Eigen::Index f = 0; f < faces.rows(); ++f)
-        for (int corner = 0; corner < 3; ++corner) normals.row(faces(f, corner)) += areas.row(f);
+void vertex_normals(const Points& vertices, const Faces& faces, Points& normals) {
+    normals.setZero(vertices.rows(), 3);
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+        const Vec3 a = vertices.row(faces(f, 0));
+        const Vec3 b = vertices.row(faces(f, 1));
+        const Vec3 c = vertices.row(faces(f, 2));
+        const Vec3 area = (b - a).cross(c - a);
+        for (int corner = 0; corner < 3; ++corner)
+            normals.row(faces(f, corner)) += area.transpose();
+    }
     normalize_rows(normals);
+}
+
+Points vertex_normals(const Points& vertices, const Faces& faces) {
+    Points normals;
+    vertex_normals(vertices, faces, normals);
     return normals;
 }
 

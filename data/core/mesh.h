@@ -23,6 +23,8 @@ Points face_normals(const Points& vertices, const Faces& faces);
 
 /// Unit vertex normals weighted by face area (|V| x 3); zero for a vertex without faces.
 Points vertex_normals(const Points& vertices, const Faces& faces);
+/// The same into `normals`, whose memory is used again.
+void vertex_normals(const Points& vertices, const Faces& faces, Points& normals);
 
 /// Undirected edges (i < j), sorted, each once.
 std::vector<std::array<int, 2>> undirected_edges(const Faces& faces);

@@ -7,46 +7,11 @@
 #include <numeric>
 #include <utility>
 
+#include "data/core/triangle.h"
+
 namespace cloth {
 
 namespace {
-
-/// Which part of a triangle is nearest: its inside, the edge opposite to a corner, or a corner.
-enum class Feature { face, edge, vertex };
-
-struct TrianglePoint {
-    Vec3 weights;
-    Feature feature;
-    int corner;  ///< of `vertex`: that corner; of `edge`: the corner opposite to it
-};
-
-/// Ericson 2005, Real-Time Collision Detection, section 5.1.5.
-TrianglePoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
-    const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-    if (d1 <= 0.0 && d2 <= 0.0) return {{1, 0, 0}, Feature::vertex, 0};
-    const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-    if (d3 >= 0.0 && d4 <= d3) return {{0, 1, 0}, Feature::vertex, 1};
-    const double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) {
-        const double t = d1 / (d1 - d3);
-        return {{1 - t, t, 0}, Feature::edge, 2};
-    }
-    const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-    if (d6 >= 0.0 && d5 <= d6) return {{0, 0, 1}, Feature::vertex, 2};
-    const double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) {
-        const double t = d2 / (d2 - d6);
-        return {{1 - t, 0, t}, Feature::edge, 1};
-    }
-    const double va = d3 * d6 - d5 * d4;
-    if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) {
-        const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-        return {{0, 1 - t, t}, Feature::edge, 0};
-    }
-    const double sum = va + vb + vc;
-    return {{va / sum, vb / sum, vc / sum}, Feature::face, 0};
-}
 
 struct Box {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity());
@@ -92,8 +57,8 @@ struct SurfaceDistance::Impl {
             for (int c = 0; c < 3; ++c) {
                 const Vec3 u = corner(f, (c + 1) % 3) - corner(f, c);
                 const Vec3 v = corner(f, (c + 2) % 3) - corner(f, c);
-                const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-                normals_of_vertices.row(faces(f, c)) += angle * normals_of_faces.row(f);
+                normals_of_vertices.row(faces(f, c)) +=
+                    angle_between(u, v) * normals_of_faces.row(f);
                 edges.try_emplace(edge_key(f, c), Vec3::Zero()).first->second +=
                     normals_of_faces.row(f).transpose();
             }
@@ -133,19 +98,18 @@ struct SurfaceDistance::Impl {
         build_node(first + count / 2, count - count / 2);
     }
 
-    void search(size_t index, const Vec3& p, double& best, int& face, TrianglePoint& found) const {
+    /// Looks for a face nearer than the squared distance `best`.
+    void search(size_t index, const Vec3& p, double& best, int& face, Vec3& weights) const {
         const Node& node = nodes[index];
         if (node.right < 0) {
             for (int i = node.first; i < node.first + node.count; ++i) {
                 const int f = order[static_cast<size_t>(i)];
-                const Vec3 a = corner(f, 0), b = corner(f, 1), c = corner(f, 2);
-                const TrianglePoint at = nearest_on_triangle(p, a, b, c);
-                const Vec3 q = at.weights[0] * a + at.weights[1] * b + at.weights[2] * c;
-                const double squared = (q - p).squaredNorm();
-                if (squared < best || (squared == best && f < face)) {
-                    best = squared;
+                const TriangleHit hit =
+                    closest_on_triangle(p, corner(f, 0), corner(f, 1), corner(f, 2));
+                if (hit.squared < best || (hit.squared == best && f < face)) {
+                    best = hit.squared;
                     face = f;
-                    found = at;
+                    weights = hit.barycentric;
                 }
             }
             return;
@@ -157,15 +121,18 @@ struct SurfaceDistance::Impl {
             std::swap(near, far);
             std::swap(near_gap, far_gap);
         }
-        if (near_gap <= best) search(near, p, best, face, found);
-        if (far_gap <= best) search(far, p, best, face, found);
+        if (near_gap <= best) search(near, p, best, face, weights);
+        if (far_gap <= best) search(far, p, best, face, weights);
     }
 
-    Vec3 normal(int f, const TrianglePoint& at) const {
-        if (at.feature == Feature::vertex)
-            return normals_of_vertices.row(surface.faces(f, at.corner));
-        if (at.feature == Feature::edge)
-            return normals_of_edges[static_cast<size_t>(f)][static_cast<size_t>(at.corner)];
+    /// The normal of the corner, edge or face that a point with these weights lies on.
+    Vec3 normal(int f, const Vec3& weights) const {
+        Eigen::Index largest = 0, least = 0;
+        weights.maxCoeff(&largest);
+        weights.minCoeff(&least);
+        const auto zeros = (weights.array() == 0.0).count();
+        if (zeros == 2) return normals_of_vertices.row(surface.faces(f, largest));
+        if (zeros == 1) return normals_of_edges[static_cast<size_t>(f)][static_cast<size_t>(least)];
         return normals_of_faces.row(f);
     }
 };
@@ -187,18 +154,19 @@ const TriMesh& SurfaceDistance::surface() const {
     return m_impl->surface;
 }
 
-NearestPoint SurfaceDistance::nearest(const Vec3& p, double radius) const {
+NearestPoint SurfaceDistance::nearest(const Vec3& p) const {
+    return nearest_within(std::numeric_limits<double>::infinity(), p).value();
+}
+
+std::optional<NearestPoint> SurfaceDistance::nearest_within(double radius, const Vec3& p) const {
+    constexpr int none = -1;
     NearestPoint result;
+    result.face = none;
     double best = radius * radius;
-    TrianglePoint at{};
-    m_impl->search(0, p, best, result.face, at);
-    if (result.face < 0) {
-        result.distance = std::numeric_limits<double>::infinity();
-        return result;
-    }
-    result.weights = at.weights;
-    for (int c = 0; c < 3; ++c) result.point += at.weights[c] * m_impl->corner(result.face, c);
-    result.normal = m_impl->normal(result.face, at);
+    m_impl->search(0, p, best, result.face, result.weights);
+    if (result.face == none) return std::nullopt;
+    for (int c = 0; c < 3; ++c) result.point += result.weights[c] * m_impl->corner(result.face, c);
+    result.normal = m_impl->normal(result.face, result.weights);
     const double distance = (p - result.point).norm();
     result.distance = (p - result.point).dot(result.normal) < 0.0 ? -distance : distance;
     return result;

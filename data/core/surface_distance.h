@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "data/core/mesh.h"
@@ -9,11 +10,11 @@ namespace cloth {
 
 /// The point of a surface that is nearest to a query point.
 struct NearestPoint {
-    int face = -1;                ///< -1: nothing within the radius
+    int face = 0;
     Vec3 point = Vec3::Zero();    ///< (m)
     Vec3 weights = Vec3::Zero();  ///< barycentric coordinates of `point` in the face
     Vec3 normal = Vec3::Zero();   ///< unit vector; angle-weighted on edges and vertices
-    double distance = 0.0;        ///< signed (m), negative inside; +inf: nothing within the radius
+    double distance = 0.0;        ///< signed (m), negative inside
 };
 
 /// Exact signed distance to a triangle surface that does not move: what garments are fitted with.
@@ -29,8 +30,10 @@ class SurfaceDistance {
 
     const TriMesh& surface() const;
 
-    /// @param radius  how far to look (m)
-    NearestPoint nearest(const Vec3& p, double radius = 1e9) const;
+    NearestPoint nearest(const Vec3& p) const;
+
+    /// Nothing if the surface is not nearer than `radius` (m).
+    std::optional<NearestPoint> nearest_within(double radius, const Vec3& p) const;
 
  private:
     struct Impl;

@@ -7,6 +7,7 @@
 #include "demos/bullet_scenes/options.h"
 #include "demos/bullet_scenes/report.h"
 #include "demos/bullet_scenes/scene_film.h"
+#include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
 
 using namespace cloth;
@@ -86,11 +87,7 @@ void run(const BulletScenesOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        run(parse_bullet_scenes_options(std::vector<std::string>(argv + 1, argv + argc)));
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        run(parse_bullet_scenes_options(arguments));
+    });
 }

@@ -1,33 +1,19 @@
 #include "demos/bullet_scenes/options.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "demos/bullet_scenes/worlds/scenes.h"
 #include "demos/compare/arguments.h"
+#include "demos/compare/command_line.h"
 
 namespace cloth {
 
-std::string bullet_scenes_usage() {
-    return "bullet_scenes: the cloth scenes of Bullet's demos, with Bullet's solver and with ours\n"
-           "  --list            name the scenes\n"
-           "  --scene A,B,...   only these\n"
-           "  --solvers A,B     bullet, quasi-newton-K, or a network NAME[+K]; default "
-           "bullet,small\n"
-           "  --rates A,B,...   steps per second, default 60\n"
-           "  --seconds N       of each run, default 10\n"
-           "  --reference NAME  solver whose last shape is right, default quasi-newton-30; none\n"
-           "  --weights DIR     folder with NAME.safetensors (default: the committed weights)\n"
-           "  --out DIR         where bullet_scenes.json, the videos and pictures go\n"
-           "  --no-videos\n";
-}
-
 namespace {
 
-std::vector<int> rates_of(const std::string& value) {
+std::vector<int> numbers(const std::vector<std::string>& texts) {
     std::vector<int> rates;
-    for (const std::string& rate : split_list(value))
-        rates.push_back(whole_number("--rates", rate, 10, 1000));
-    if (rates.empty()) throw UsageError("--rates: give at least one; see --help");
+    for (const std::string& text : texts) rates.push_back(whole_number("--rates", text, 10, 1000));
     return rates;
 }
 
@@ -44,39 +30,31 @@ void check_scenes(const std::vector<std::string>& names) {
 
 BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& arguments) {
     BulletScenesOptions options;
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        const std::string& option = arguments[i];
-        if (option == "--help" || option == "-h") throw UsageError(bullet_scenes_usage());
-        if (option == "--list") {
-            options.list = true;
-            continue;
-        }
-        if (option == "--no-videos") {
-            options.videos = false;
-            continue;
-        }
-        if (i + 1 == arguments.size())
-            throw UsageError(option + " is unknown or needs a value; see --help");
-        const std::string& value = arguments[++i];
-        if (option == "--scene")
-            options.scenes = split_list(value);
-        else if (option == "--solvers")
-            options.solvers = split_list(value);
-        else if (option == "--rates")
-            options.rates = rates_of(value);
-        else if (option == "--seconds")
-            options.seconds = whole_number(option, value, 1, 600);
-        else if (option == "--reference")
-            options.reference = value;
-        else if (option == "--weights")
-            options.weights = value;
-        else if (option == "--out")
-            options.out = value;
-        else
-            throw UsageError("unknown option " + option + "; see --help");
-    }
+    std::vector<std::string> rates;
+    bool no_videos = false;
+    CLI::App app(
+        "bullet_scenes: the cloth scenes of Bullet's demos, with Bullet's solver and with ours",
+        "bullet_scenes");
+    set_up(app);
+    app.add_flag("--list", options.list, "name the scenes");
+    add_list(app, "--scene", options.scenes, "only these");
+    add_list(app, "--solvers", options.solvers,
+             "bullet, quasi-newton-K, or a network NAME[+K];\ndefault bullet,small");
+    add_list(app, "--rates", rates, "steps per second, 10 to 1000, default 60");
+    add_whole_number(app, "--seconds", options.seconds, 1, 600, "of each run, default 10");
+    app.add_option("--reference", options.reference,
+                   "solver whose last shape is right, default quasi-newton-30;\nor none")
+        ->type_name("NAME");
+    app.add_option("--weights", options.weights,
+                   "folder with NAME.safetensors (default: the committed weights)")
+        ->type_name("DIR");
+    app.add_option("--out", options.out, "where bullet_scenes.json, the videos and pictures go")
+        ->type_name("DIR");
+    app.add_flag("--no-videos", no_videos, "pictures and figures only");
+    parse(app, arguments);
+    options.videos = !no_videos;
+    if (!rates.empty()) options.rates = numbers(rates);
     check_scenes(options.scenes);
-    if (options.solvers.empty()) throw UsageError("--solvers: name at least one; see --help");
     return options;
 }
 

@@ -17,9 +17,7 @@ struct BulletScenesOptions {
     std::string out = "out/bullet_scenes";
 };
 
-std::string bullet_scenes_usage();
-
-/// @throws UsageError naming the option, or the scenes there are
+/// @throws UsageError naming the option, or the scenes there are; HelpText if it is asked for
 BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& arguments);
 
 }  // namespace cloth

@@ -55,8 +55,7 @@ TriMesh surfaceOf(const ShapePart& part, const Pose& pose) {
     obstacle.radius = part.radius;
     obstacle.pose1 = pose * part.frame;
     obstacle.faces = part.faces;
-    obstacle.x1 =
-        (part.vertices * pose.linear().transpose()).rowwise() + pose.translation().transpose();
+    obstacle.x1 = transformed(part.vertices, pose);
     return surface_of(obstacle);
 }
 

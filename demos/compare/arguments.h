@@ -6,10 +6,16 @@
 
 namespace cloth {
 
-/// The command line is wrong, or asks for help: the message is what the user shall read.
+/// The command line is wrong: the message is what the user shall read.
 class UsageError : public std::runtime_error {
  public:
     using std::runtime_error::runtime_error;
+};
+
+/// The command line asks for help, which is the message.
+class HelpText : public UsageError {
+ public:
+    using UsageError::UsageError;
 };
 
 /// The items of a list with commas between them; empty ones are left out.

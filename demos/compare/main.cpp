@@ -13,6 +13,7 @@
 
 #include "data/core/errors.h"
 #include "demos/compare/body_scene.h"
+#include "demos/compare/command_line.h"
 #include "demos/compare/film.h"
 #include "demos/compare/machine.h"
 #include "demos/compare/measure.h"
@@ -159,14 +160,9 @@ void compare(const CompareOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        const CompareOptions options =
-            parse_compare_options(std::vector<std::string>(argv + 1, argv + argc));
+    return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        const CompareOptions options = parse_compare_options(arguments);
         if (options.threads > 0) omp_set_num_threads(options.threads);
         options.worker.empty() ? compare(options) : run_worker(options);
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    });
 }

@@ -55,7 +55,7 @@ Rollout roll_out(const ComparisonScene& scene, const ClothState& start, int fram
 
 json solver_json(const std::string& name, const Stepper& stepper, double memory,
                  const Rollout& rollout, const SingleSteps& single) {
-    const bool failed = rollout.first_failed_frame >= 0;
+    const bool failed = rollout.first_failed_frame.has_value();
     return {{"name", name},
             {"stepper", stepper.name()},
             {"ms_per_frame",
@@ -68,7 +68,7 @@ json solver_json(const std::string& name, const Stepper& stepper, double memory,
               {"contact", json_number(median(rollout.contact))}}},
             {"peak_memory_mb", json_number(memory)},
             {"finite", rollout.finite},
-            {"first_failed_frame", failed ? json(rollout.first_failed_frame) : json(nullptr)},
+            {"first_failed_frame", failed ? json(*rollout.first_failed_frame) : json(nullptr)},
             {"failure", failed ? json(rollout.failure) : json(nullptr)},
             {"one_step", to_json(single)},
             {"rollout", to_json(rollout)},

@@ -26,9 +26,7 @@ struct CompareOptions {
 BodySceneSettings scene_settings(const CompareOptions& options);
 SolverSettings solver_settings(const CompareOptions& options);
 
-std::string compare_usage();
-
-/// @throws UsageError
+/// @throws UsageError naming the option; HelpText if it is asked for
 CompareOptions parse_compare_options(const std::vector<std::string>& arguments);
 
 /// The arguments that make another process do the work `worker` of these options.

@@ -281,8 +281,8 @@ std::string notes_html(const json& report) {
     const double frames = number_at(report, "/scene/frames");
     const double known = number_at(report, "/scene/reference_frames");
     if (known < frames)
-        html += "<li>References are dear: they cover the first " + fixed_text(known, 0) + " of " +
-                fixed_text(frames, 0) +
+        html += "<li>References are expensive: they cover the first " + fixed_text(known, 0) +
+                " of " + fixed_text(frames, 0) +
                 " frames. Errors and gaps are known for these only; times, penetration, stretch "
                 "and jitter are of all frames.</li>\n";
     const json* reference = solver_named(report, "reference");

@@ -46,7 +46,7 @@ void RolloutMeter::score_last_step(StepEnergies& energies, const Boundary& bound
 }
 
 void RolloutMeter::fail(int frame, const std::string& how) {
-    if (m_rollout.first_failed_frame >= 0) return;
+    if (m_rollout.first_failed_frame) return;
     m_rollout.first_failed_frame = frame;
     m_rollout.failure = how;
 }

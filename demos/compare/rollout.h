@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct Rollout {
     std::vector<double> residual;
     JitterMeter jitter;
     bool finite = true;
-    int first_failed_frame = -1;
+    std::optional<int> first_failed_frame;
     std::string failure;
 };
 
@@ -43,8 +44,8 @@ class RolloutMeter {
     /// The next frame. False: its numbers are not finite and there is nothing to go on from.
     bool advance(const Boundary& boundary);
 
-    /// Minimises the last step's energy from the solver's result, which is dear, and records how
-    /// far the solver was from that.
+    /// Minimises the last step's energy from the solver's result, which is expensive, and records
+    /// how far the solver was from that.
     void score_last_step(StepEnergies& energies, const Boundary& boundary);
 
     int frame() const { return static_cast<int>(m_rollout.ms.size()); }  ///< the next one

@@ -16,7 +16,7 @@ HardSceneParts armpit_pinch();
 HardSceneParts crotch_pinch();
 HardSceneParts closing_boxes();
 
-// cloth against itself: layer_scenes.cpp
+// cloth against itself: self_contact_cases.cpp
 HardSceneParts falls_on_edge();
 HardSceneParts two_layers();
 

@@ -17,7 +17,7 @@ Garment curtain() {
 }
 
 Points held_pins(const Garment& garment) {
-    return rows_of(garment.rest().vertices, garment.pins());
+    return garment.rest().vertices(garment.pins(), Eigen::all);
 }
 
 /// Two limbs that close on the curtain from both sides and open again.

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double reference_budget = 350000.0;  // vertices times frames that Newton is run for
 
-bool too_dear(const std::string& stepper, const HardScene& scene) {
+bool too_expensive(const std::string& stepper, const HardScene& scene) {
     const auto vertices = static_cast<double>(scene.garment().vertex_count());
     return stepper == "reference" && vertices * scene.frames() > reference_budget;
 }
@@ -37,8 +37,8 @@ HardResult run_stepper(const HardContest& contest, const HardScene& scene,
                        const std::string& stepper,
                        const std::function<void(int, int, const std::string&)>& progress) {
     const HardCase& hard = *contest.hard;
-    if (too_dear(stepper, scene))
-        return without_run(skipped_row(hard, stepper, "too dear", contest.frames));
+    if (too_expensive(stepper, scene))
+        return without_run(skipped_row(hard, stepper, "too expensive", contest.frames));
     std::unique_ptr<Stepper> solver;
     try {
         solver = make_solver(stepper, scene, contest.solver);

@@ -24,7 +24,7 @@ struct HardResult {
 };
 
 /// Makes each stepper for a scrap of cloth, so that names that cannot be used are known before the
-/// dear part begins. @throws UsageError, LoadError as make_solver() does
+/// expensive part begins. @throws UsageError, LoadError as make_solver() does
 void check_steppers(const std::vector<std::string>& steppers, const SolverSettings& solver);
 
 /// Frames of a case: scaled, at least one; the soak cases last for `soak_frames` if it is not 0.

@@ -22,7 +22,7 @@ HardRow bare_row(const HardCase& hard, const std::string& stepper, int frames_wa
     row.hard_case = hard.name;
     row.stepper = stepper;
     row.penetration_bound_mm = hard.bounds.penetration_mm;
-    row.stretch_bound = hard.bounds.stretch_p99;
+    row.stretch_bound = hard.bounds.stretch_p99.value_or(HardRow::unknown);
     row.frames_wanted = frames_wanted;
     return row;
 }
@@ -52,9 +52,9 @@ HardRow make_row(const HardCase& hard, const std::string& stepper, const HardRun
     row.surface_max_mm = highest(run.surface_mm);
     row.stretch_p99 = highest(run.stretch_p99);
     if (!run.stretch_p99.empty()) row.end_stretch_p99 = run.stretch_p99.back();
-    row.rest_jitter_mm = run.rest_jitter_mm;
+    row.rest_jitter_mm = run.rest_jitter_mm.value_or(HardRow::unknown);
     row.rms_speed_max = highest(run.rms_speed);
-    if (!run.held()) row.first_failed_frame = run.first_failed_frame;
+    row.first_failed_frame = run.first_failed_frame;
     row.failure = run.failure;
     row.ms_median = median(run.ms);
     row.frames = run.frames;

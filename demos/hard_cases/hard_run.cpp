@@ -86,8 +86,8 @@ class HardMeter {
         m_run.stretch_p99.push_back(measure_stretch(garment, m_state.x).p99);
         m_run.rms_speed.push_back(rms(motion) / m_scene.dt());
         m_motion_mm.push_back(1e3 * rms(motion));
-        if (m_bounds.tangles < Bounds::none)
-            m_run.tangles.push_back(static_cast<double>(m_tangles.find(m_state.x).size()));
+        if (m_bounds.tangles)
+            m_run.tangles.push_back(static_cast<int>(m_tangles.find(m_state.x).size()));
         check(frame);
         if (is_impaled(outside, garment.rest().faces, m_state.x))
             fail(frame, "a limb is through the cloth");
@@ -112,35 +112,36 @@ class HardMeter {
         const double speed = m_run.rms_speed.back();
         if (depth > m_bounds.penetration_mm)
             fail(frame, text("%.1f mm inside (at most %.1f)", depth, m_bounds.penetration_mm));
-        if (stretch > m_bounds.stretch_p99)
-            fail(frame, text("stretched to %.2f (at most %.2f)", stretch, m_bounds.stretch_p99));
-        if (speed > m_bounds.rms_speed)
-            fail(frame, text("RMS speed %.1f m/s (at most %.1f)", speed, m_bounds.rms_speed));
-        if (!m_run.tangles.empty() && m_run.tangles.back() > m_bounds.tangles)
+        if (m_bounds.stretch_p99 && stretch > *m_bounds.stretch_p99)
+            fail(frame, text("stretched to %.2f (at most %.2f)", stretch, *m_bounds.stretch_p99));
+        if (m_bounds.rms_speed && speed > *m_bounds.rms_speed)
+            fail(frame, text("RMS speed %.1f m/s (at most %.1f)", speed, *m_bounds.rms_speed));
+        if (m_bounds.tangles && m_run.tangles.back() > *m_bounds.tangles)
             fail(frame, text("%.0f edges pass through faces (at most %.0f)", m_run.tangles.back(),
-                             m_bounds.tangles));
+                             *m_bounds.tangles));
     }
 
     void check_the_end(int frame) {
         const double stretch = m_run.stretch_p99.back();
-        if (stretch > m_bounds.end_stretch_p99)
+        if (m_bounds.end_stretch_p99 && stretch > *m_bounds.end_stretch_p99)
             fail(frame, text("still stretched to %.2f at the end (at most %.2f)", stretch,
-                             m_bounds.end_stretch_p99));
+                             *m_bounds.end_stretch_p99));
         const double top = *std::max_element(m_run.rms_speed.begin(), m_run.rms_speed.end());
-        if (top < m_bounds.least_top_speed)
+        if (m_bounds.least_top_speed && top < *m_bounds.least_top_speed)
             fail(frame, text("slow motion: RMS speed at most %.2f m/s (at least %.2f)", top,
-                             m_bounds.least_top_speed));
+                             *m_bounds.least_top_speed));
         double squares = 0.0;
         const size_t all = m_motion_mm.size(), first = all - all / 3;
         for (size_t k = first; k < all; ++k) squares += m_motion_mm[k] * m_motion_mm[k];
-        m_run.rest_jitter_mm = std::sqrt(squares / static_cast<double>(all - first));
-        if (m_run.rest_jitter_mm > m_bounds.rest_jitter_mm)
-            fail(frame, text("moves %.3f mm per frame at rest (at most %.3f)", m_run.rest_jitter_mm,
-                             m_bounds.rest_jitter_mm));
+        const double jitter = std::sqrt(squares / static_cast<double>(all - first));
+        m_run.rest_jitter_mm = jitter;
+        if (m_bounds.rest_jitter_mm && jitter > *m_bounds.rest_jitter_mm)
+            fail(frame, text("moves %.3f mm per frame at rest (at most %.3f)", jitter,
+                             *m_bounds.rest_jitter_mm));
     }
 
     void fail(int frame, const std::string& how) {
-        if (m_run.first_failed_frame >= 0) return;
+        if (m_run.first_failed_frame) return;
         m_run.first_failed_frame = frame;
         m_run.failure = how;
     }

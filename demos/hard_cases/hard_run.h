@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,16 +15,16 @@ namespace cloth {
 struct HardRun {
     int frames = 0;  ///< that it lasted
     bool finite = true;
-    int first_failed_frame = -1;                     ///< the first one out of bounds
+    std::optional<int> first_failed_frame;           ///< the first one out of bounds
     std::string failure;                             ///< in what way
     std::vector<double> ms, stretch_p99, rms_speed;  ///< one per frame
     std::vector<double> penetration_mm;              ///< deepest free vertex
-    std::vector<double> tangles;     ///< edges through faces, if the case has a bound on them
+    std::vector<int> tangles;        ///< edges through faces, if the case has a bound on them
     std::vector<double> surface_mm;  ///< deepest point, edge midpoints and face centres included
-    double rest_jitter_mm = std::numeric_limits<double>::quiet_NaN();
-    std::vector<Points> x;  ///< the garment at picture_frames(), as far as it got
+    std::optional<double> rest_jitter_mm;  ///< of a case that ran in full
+    std::vector<Points> x;                 ///< the garment at picture_frames(), as far as it got
 
-    bool held() const { return first_failed_frame < 0; }
+    bool held() const { return !first_failed_frame; }
 };
 
 /// The frames that are drawn, of a run of so many: first, middle, last.

@@ -1,19 +1,13 @@
+#include "data/core/triangle.h"
 #include "demos/hard_cases/hard_run.h"
 
 namespace cloth {
 namespace {
 
-/// Moeller and Trumbore 1997, for the segment from p to q.
+/// Whether the segment from p to q goes through the triangle abc.
 bool crosses(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-    const Vec3 way = q - p, ab = b - a, ac = c - a;
-    const Vec3 h = way.cross(ac);
-    const double determinant = ab.dot(h);
-    if (determinant == 0.0) return false;
-    const Vec3 s = (p - a) / determinant;
-    const double u = s.dot(h);
-    const Vec3 k = s.cross(ab);
-    const double v = way.dot(k), t = ac.dot(k);
-    return u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t >= 0.0 && t <= 1.0;
+    const auto hit = meet_line(p, q - p, a, b, c);
+    return hit && hit->is_inside() && hit->at >= 0.0 && hit->at <= 1.0;
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
 #include "demos/hard_cases/contest.h"
 #include "demos/hard_cases/motion_cases.h"
@@ -23,8 +24,8 @@ void list_cases() {
 /// The case with the bound of stretch that the reference's row sets, if there is one.
 HardCase bounded(HardCase hard, const HardReport& report, int frames) {
     const HardRow* reference = report.find(hard.name, "reference", frames);
-    if (hard.stretch_of_reference > 0.0 && reference && reference->held)
-        hard.bounds.stretch_p99 = hard.stretch_of_reference * reference->stretch_p99;
+    if (hard.stretch_of_reference && reference && reference->held)
+        hard.bounds.stretch_p99 = *hard.stretch_of_reference * reference->stretch_p99;
     return hard;
 }
 
@@ -75,11 +76,7 @@ void run(const HardCaseOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        run(parse_hard_case_options(std::vector<std::string>(argv + 1, argv + argc)));
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        run(parse_hard_case_options(arguments));
+    });
 }

@@ -2,7 +2,7 @@
 
 #include "data/core/mesh.h"
 
-/// Level meshes (y = 0, normal +y) that no careful tailor makes, but users have.
+/// Level meshes (y = 0, normal +y) that are badly made, as those of users may be.
 namespace cloth {
 
 /// A ring of regular triangles from 1 mm at its inner to 5 cm at its outer border (radius 0.2 m).

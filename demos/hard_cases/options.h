@@ -22,13 +22,11 @@ struct HardCaseOptions {
     std::string out = "out/hard_cases";
 };
 
-std::string hard_cases_usage();
-
 /// The reference, quasi-Newton with and without sub-steps, XPBD, the network with its safeguard
 /// and alone, Bullet.
 std::vector<std::string> default_hard_case_steppers();
 
-/// @throws UsageError naming the option, or the cases there are
+/// @throws UsageError naming the option, or the cases there are; HelpText if it is asked for
 HardCaseOptions parse_hard_case_options(const std::vector<std::string>& arguments);
 
 }  // namespace cloth

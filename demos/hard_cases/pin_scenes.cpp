@@ -18,7 +18,7 @@ HardSceneParts held_by_two_sides(const std::function<double(double)>& width) {
     for (const int pin : sheet_side(sheet, SheetSide::right)) pins.push_back(pin);
     Garment garment("sheet", sheet, Fabric::soft_cotton(), pins);
     const ClothState start = ClothState::at_rest(garment);
-    const Points held = rows_of(sheet.vertices, garment.pins());
+    const Points held = sheet.vertices(garment.pins(), Eigen::all);
     const auto outside = [held, width](double, double t1) {
         Boundary boundary;
         boundary.pin_targets = held;
@@ -36,7 +36,7 @@ HardSceneParts yanked_corner() {
     Garment garment("sheet", sheet, Fabric::soft_cotton(),
                     {sheet_corners(level_sheet(sheet_vertices))[0]});
     const ClothState start = ClothState::at_rest(garment);
-    const Points held = rows_of(sheet.vertices, garment.pins());
+    const Points held = sheet.vertices(garment.pins(), Eigen::all);
     const auto outside = [=](double, double t1) {
         Boundary boundary;
         const double way = speed * (end - begin) * ramp(t1, begin, end);

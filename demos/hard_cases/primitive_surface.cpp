@@ -51,9 +51,7 @@ TriMesh surface_of(const Obstacle& obstacle) {
     TriMesh mesh = obstacle.shape == ObstacleShape::box
                        ? box_surface(obstacle.half_extents)
                        : round_surface(obstacle.radius, obstacle.half_extents.y());
-    mesh.vertices = ((mesh.vertices * obstacle.pose1.linear().transpose()).rowwise() +
-                     obstacle.pose1.translation().transpose())
-                        .eval();
+    mesh.vertices = transformed(mesh.vertices, obstacle.pose1);
     return mesh;
 }
 

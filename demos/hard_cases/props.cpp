@@ -60,13 +60,6 @@ Pose turned_about_x(const Vec3& position, double angle) {
     return pose;
 }
 
-Points rows_of(const Points& points, const std::vector<int>& rows) {
-    Points chosen(static_cast<Eigen::Index>(rows.size()), 3);
-    for (size_t k = 0; k < rows.size(); ++k)
-        chosen.row(static_cast<Eigen::Index>(k)) = points.row(rows[k]);
-    return chosen;
-}
-
 TriMesh level_sheet(int vertices) {
     return make_sheet(sheet_size, sheet_size, vertices);
 }

@@ -23,9 +23,6 @@ Pose placed(const Vec3& position);
 /// At `position`, the y axis turned about x by `angle` (rad).
 Pose turned_about_x(const Vec3& position, double angle);
 
-/// Rows of `points`, such as the positions of pins.
-Points rows_of(const Points& points, const std::vector<int>& rows);
-
 /// A sheet of 0.6 m that is level (y = 0), or hangs in the plane z = 0 from y = 0.3 downwards.
 TriMesh level_sheet(int vertices);
 TriMesh hanging_sheet(int vertices);

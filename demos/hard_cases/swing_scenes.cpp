@@ -33,8 +33,8 @@ HardSceneParts swing(const TriMesh& level, const SwingSettings& settings) {
     const double rise = settings.ball_rise;
     Garment garment("sheet", level, settings.fabric, back_clips(level));
     ClothState start = ClothState::at_rest(garment);
-    start.x = (start.x * place.linear().transpose()).rowwise() + place.translation().transpose();
-    const Points pins = rows_of(start.x, garment.pins());
+    start.x = transformed(start.x, place);
+    const Points pins = start.x(garment.pins(), Eigen::all);
     const Vec3 gravity = place.linear() * Vec3(0.0, -settings.gravity, 0.0);
     const auto outside = [=](double t0, double t1) {
         Boundary boundary;

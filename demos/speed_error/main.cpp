@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "demos/compare/arguments.h"
+#include "demos/compare/command_line.h"
 #include "demos/compare/machine.h"
 #include "demos/compare/progress.h"
 #include "demos/speed_error/options.h"
@@ -93,11 +94,7 @@ void speed_error(const SpeedErrorOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    try {
-        speed_error(parse_speed_error_options(std::vector<std::string>(argv + 1, argv + argc)));
-        return 0;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "%s\n", error.what());
-        return 1;
-    }
+    return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        speed_error(parse_speed_error_options(arguments));
+    });
 }

@@ -1,97 +1,88 @@
 #include "demos/speed_error/options.h"
 
-#include <algorithm>
-#include <map>
+#include <CLI/CLI.hpp>
 
-#include "demos/compare/arguments.h"
+#include "demos/compare/command_line.h"
 #include "demos/speed_error/scenes.h"
 
 namespace cloth {
 namespace {
 
-/// The choices that `value` names: one of them, or all.
-std::vector<std::string> chosen(const std::string& option, const std::string& value,
-                                const std::vector<std::string>& choices, const std::string& all) {
-    if (value == all) return choices;
-    if (std::find(choices.begin(), choices.end(), value) != choices.end()) return {value};
-    throw UsageError(option + " " + value + ": choose " + join_list(choices, ", ") + " or " + all);
+/// An option that chooses one of some things, or all of them.
+void add_choice(CLI::App& app, const std::string& name, std::vector<std::string>& chosen,
+                const std::vector<std::string>& choices, const std::string& all,
+                const std::string& description) {
+    std::vector<std::string> names = choices;
+    names.push_back(all);
+    const auto choose = [&chosen, choices, all](const std::string& value) {
+        chosen = value == all ? choices : std::vector<std::string>{value};
+    };
+    app.add_option_function<std::string>(name, choose, description)
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name("NAME");
 }
+
+const char* const explanations =
+    "All solvers run in this process, warmed up, in turns: each advances its own\n"
+    "rollout by one frame, then the next solver does, so that all meet the same\n"
+    "machine. Then each makes one step from every state of the reference, in turns.\n"
+    "\n"
+    "  ms_median, ms_p95    time of a frame of the rollout\n"
+    "  ms_ratio             median over the frames of the time divided by that of\n"
+    "                       --relative-to in the same frame\n"
+    "  gap_median           energy above the minimum after one step; 1: no better than\n"
+    "                       the guess that all start from\n"
+    "  progress_median      the same; 1: no better than not moving\n"
+    "  rmse_mm              distance to the reference after one step\n"
+    "  rollout_rmse_mm      to the reference of 1/30 s, over the whole rollout\n"
+    "  fine_rmse_mm         to the reference of 1/240 s, over the whole rollout\n"
+    "  peak_memory_mb       highest resident memory while the solver was made and stepped\n"
+    "                       twice, less that before; freed memory was given back first.\n"
+    "                       Libraries count for the solver that touched them first\n"
+    "\n"
+    "References are kept in DIR/work and used again; delete it after a change of the\n"
+    "physics. Results are written after each scene.";
 
 }  // namespace
 
-std::string speed_error_usage() {
-    return "speed_error: time per frame of every solver against its error\n"
-           "  --scene NAME         tshirt (4,000 vertices, on motion 01_01; default),\n"
-           "                       sheet (hangs by two corners, swings down from horizontal),\n"
-           "                       sphere (a sheet falls on a moving sphere), or all\n"
-           "  --fabric NAME        soft (cotton of 33 N/m; default), real (as measured,\n"
-           "                       5 kN/m), or both\n"
-           "  --frames N           frames of 1/30 s (default 30; 0: as long as the scene lasts)\n"
-           "  --vertices N         of the sheets, 100 to 20000 (default 4000)\n"
-           "  --solvers A,B,...    bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
-           "                       sub-steps), quasi-newton-K, newton-K (K iterations),\n"
-           "                       quasi-newton, NAME (a network; both as shipped), reference,\n"
-           "                       NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
-           "                       instead of the engine), bf16-NAME+K (products in bfloat16);\n"
-           "                       -bdf2 at the end: by BDF2. Default: every family at\n"
-           "                       several settings, with all networks of the weights folder\n"
-           "  --relative-to NAME   solver whose time the others' is divided by, frame by frame\n"
-           "                       (default quasi-newton-3)\n"
-           "  --weights DIR        folder with NAME.safetensors (default: the committed ones)\n"
-           "  --threads N          each bound to a core of its own (0: all cores; default)\n"
-           "  --out DIR            where speed_error.csv, speed_error.json and the plots\n"
-           "                       SCENE_FABRIC_{gap,progress,rmse,fine_rmse}.svg go\n"
-           "\n"
-           "All solvers run in this process, warmed up, in turns: each advances its own\n"
-           "rollout by one frame, then the next solver does, so that all meet the same\n"
-           "machine. Then each makes one step from every state of the reference, in turns.\n"
-           "\n"
-           "  ms_median, ms_p95    time of a frame of the rollout\n"
-           "  ms_ratio             median over the frames of the time divided by that of\n"
-           "                       --relative-to in the same frame\n"
-           "  gap_median           energy above the minimum after one step; 1: no better than\n"
-           "                       the guess that all start from\n"
-           "  progress_median      the same; 1: no better than not moving\n"
-           "  rmse_mm              distance to the reference after one step\n"
-           "  rollout_rmse_mm      to the reference of 1/30 s, over the whole rollout\n"
-           "  fine_rmse_mm         to the reference of 1/240 s, over the whole rollout\n"
-           "  peak_memory_mb       highest resident memory while the solver was made and stepped\n"
-           "                       twice, less that before; freed memory was given back first.\n"
-           "                       Libraries count for the solver that touched them first\n"
-           "\n"
-           "References are kept in DIR/work and used again; delete it after a change of the\n"
-           "physics. Results are written after each scene.\n";
-}
-
 SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& arguments) {
     SpeedErrorOptions options;
-    std::map<std::string, std::string*> texts = {{"--relative-to", &options.relative_to},
-                                                 {"--weights", &options.weights},
-                                                 {"--out", &options.out}};
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        const std::string& option = arguments[i];
-        if (option == "--help" || option == "-h") throw UsageError(speed_error_usage());
-        if (i + 1 == arguments.size()) throw UsageError(option + " needs a value; see --help");
-        const std::string& value = arguments[++i];
-        if (texts.count(option))
-            *texts[option] = value;
-        else if (option == "--scene")
-            options.scenes = chosen(option, value, scene_names(), "all");
-        else if (option == "--fabric")
-            options.fabrics = chosen(option, value, {"soft", "real"}, "both");
-        else if (option == "--solvers")
-            options.solvers = split_list(value);
-        else if (option == "--frames")
-            options.frames = whole_number(option, value, 0, 100000);
-        else if (option == "--vertices")
-            options.vertices = whole_number(option, value, 100, 20000);
-        else if (option == "--threads")
-            options.threads = whole_number(option, value, 0, 256);
-        else
-            throw UsageError("unknown option " + option + "; see --help");
-        if (option == "--solvers" && options.solvers.empty())
-            throw UsageError("--solvers: name at least one; see --help");
-    }
+    CLI::App app("speed_error: time per frame of every solver against its error", "speed_error");
+    set_up(app);
+    add_choice(app, "--scene", options.scenes, scene_names(), "all",
+               "tshirt (4,000 vertices, on motion 01_01; default),\n"
+               "sheet (hangs by two corners, swings down from horizontal),\n"
+               "sphere (a sheet falls on a moving sphere), or all");
+    add_choice(app, "--fabric", options.fabrics, {"soft", "real"}, "both",
+               "soft (cotton of 33 N/m; default), real (as measured,\n"
+               "5 kN/m), or both");
+    add_whole_number(app, "--frames", options.frames, 0, 100000,
+                     "frames of 1/30 s (default 30; 0: as long as the scene lasts)");
+    add_whole_number(app, "--vertices", options.vertices, 100, 20000,
+                     "of the sheets, 100 to 20000 (default 4000)");
+    add_list(app, "--solvers", options.solvers,
+             "bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
+             "sub-steps), quasi-newton-K, newton-K (K iterations),\n"
+             "quasi-newton, NAME (a network; both as shipped), reference,\n"
+             "NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
+             "instead of the engine), bf16-NAME+K (products in bfloat16);\n"
+             "-bdf2 at the end: by BDF2. Default: every family at\n"
+             "several settings, with all networks of the weights folder");
+    app.add_option("--relative-to", options.relative_to,
+                   "solver whose time the others' is divided by, frame by frame\n"
+                   "(default quasi-newton-3)")
+        ->type_name("NAME");
+    app.add_option("--weights", options.weights,
+                   "folder with NAME.safetensors (default: the committed ones)")
+        ->type_name("DIR");
+    add_whole_number(app, "--threads", options.threads, 0, 256,
+                     "each bound to a core of its own (0: all cores; default)");
+    app.add_option("--out", options.out,
+                   "where speed_error.csv, speed_error.json and the plots\n"
+                   "SCENE_FABRIC_{gap,progress,rmse,fine_rmse}.svg go")
+        ->type_name("DIR");
+    app.footer(explanations);
+    parse(app, arguments);
     return options;
 }
 

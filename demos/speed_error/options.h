@@ -18,9 +18,7 @@ struct SpeedErrorOptions {
     std::string out = "out/speed_error";
 };
 
-std::string speed_error_usage();
-
-/// @throws UsageError naming the option and its choices
+/// @throws UsageError naming the option and its choices; HelpText if it is asked for
 SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& arguments);
 
 /// Every family of solvers at several settings: Bullet, XPBD, quasi-Newton, Newton, and the given

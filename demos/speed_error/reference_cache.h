@@ -6,8 +6,8 @@
 
 namespace cloth {
 
-/// The start and the references of a scene, computed once and kept in files: they are dear, and
-/// other solvers and shorter runs need the same.
+/// The start and the references of a scene, computed once and kept in files: they are expensive,
+/// and other solvers and shorter runs need the same.
 class ReferenceCache {
  public:
     /// @param folder  made if it is not there

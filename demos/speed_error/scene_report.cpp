@@ -30,7 +30,7 @@ ordered_json describe(const SceneSettings& settings, const ComparisonScene& scen
     return json;
 }
 
-/// All solvers, so that a name that cannot be used is known before the dear part begins.
+/// All solvers, so that a name that cannot be used is known before the expensive part begins.
 std::vector<Contestant> make_contestants(const ComparisonScene& scene, const ClothState& start,
                                          const ContestSettings& settings,
                                          const ProgressFunction& progress) {

@@ -67,7 +67,7 @@ SolverRow make_row(const std::string& solver, const ContestResult& result,
     row.penetration_max_mm = quantile(rollout.penetration, 1.0);
     row.finite = rollout.finite;
     row.failure = rollout.failure;
-    if (rollout.first_failed_frame >= 0) row.first_failed_frame = rollout.first_failed_frame;
+    row.first_failed_frame = rollout.first_failed_frame;
     return row;
 }
 

@@ -47,7 +47,7 @@ class Deck {
  private:
     void refill(int dealt, int missing, int* out) {
         shuffle(m_cards, m_random);
-        // Cards already in this hand go to the end, so that no edge is heard twice in one step.
+        // Edges that this step already has go to the end, so that none is taken twice in one step.
         std::stable_partition(m_cards.begin(), m_cards.end(), [&](int card) {
             return std::find(out, out + dealt, card) == out + dealt;
         });

@@ -2,43 +2,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 namespace cloth {
 
+static_assert(std::size(node_groups) == size_t(NodeFeature::jacobi_base) + 1);
+static_assert(std::size(edge_groups) == size_t(EdgeFeature::log_rest_length) + 1);
+static_assert(std::size(world_groups) == size_t(WorldFeature::nearness) + 1);
+static_assert(std::size(body_groups) == size_t(BodyFeature::friction) + 1);
+
 FeatureLayout node_layout(bool force_features) {
-    FeatureLayout layout = {
-        {"velocity", 3, FeatureKind::vector},    {"normal", 3, FeatureKind::fixed},
-        {"acceleration", 3, FeatureKind::fixed}, {"projection", 3, FeatureKind::vector},
-        {"log_mass", 1, FeatureKind::scalar},    {"pinned", 1, FeatureKind::fixed},
-        {"material", 3, FeatureKind::fixed},     {"near_obstacle", 1, FeatureKind::fixed},
-    };
-    if (force_features)
-        for (const char* name : {"elastic_now", "elastic_base", "force_base", "jacobi_base"})
-            layout.push_back({name, 3, FeatureKind::vector});
-    return layout;
+    const FeatureGroup* end =
+        force_features ? std::end(node_groups) : node_groups + size_t(NodeFeature::elastic_now);
+    return {std::begin(node_groups), end};
 }
 
 FeatureLayout edge_layout() {
-    return {{"relative_now", 3, FeatureKind::vector},
-            {"strain_now", 1, FeatureKind::scalar},
-            {"relative_base", 3, FeatureKind::vector},
-            {"strain_base", 1, FeatureKind::scalar},
-            {"log_rest_length", 1, FeatureKind::scalar}};
+    return {std::begin(edge_groups), std::end(edge_groups)};
 }
 
 FeatureLayout world_layout() {
-    return {{"relative_now", 3, FeatureKind::vector},  {"length_now", 1, FeatureKind::scalar},
-            {"relative_next", 3, FeatureKind::vector}, {"length_next", 1, FeatureKind::scalar},
-            {"body_velocity", 3, FeatureKind::vector}, {"body_normal", 3, FeatureKind::fixed},
-            {"distance_now", 1, FeatureKind::scalar},  {"distance_next", 1, FeatureKind::scalar},
-            {"nearness", 1, FeatureKind::fixed}};
+    return {std::begin(world_groups), std::end(world_groups)};
 }
 
 FeatureLayout body_layout() {
-    return {{"velocity", 3, FeatureKind::vector},
-            {"normal", 3, FeatureKind::fixed},
-            {"friction", 1, FeatureKind::fixed}};
+    return {std::begin(body_groups), std::end(body_groups)};
 }
 
 int feature_count(const FeatureLayout& layout) {

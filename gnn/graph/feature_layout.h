@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
+#include <string_view>
 #include <vector>
 
 namespace cloth {
@@ -18,12 +18,95 @@ enum class FeatureKind {
 
 /// Some neighbouring columns of a feature matrix.
 struct FeatureGroup {
-    std::string name;
+    std::string_view name;
     int size;
     FeatureKind kind;
 };
 
 using FeatureLayout = std::vector<FeatureGroup>;
+
+// Each matrix of features has a list of names and a table, in the order of the columns:
+// first_column<NodeFeature::normal> is where a group begins.
+
+enum class NodeFeature {
+    velocity,
+    normal,
+    acceleration,
+    projection,
+    log_mass,
+    pinned,
+    material,
+    near_obstacle,
+    elastic_now,  ///< this and what follows: with force features only
+    elastic_base,
+    force_base,
+    jacobi_base
+};
+inline constexpr FeatureGroup node_groups[] = {
+    {"velocity", 3, FeatureKind::vector},    {"normal", 3, FeatureKind::fixed},
+    {"acceleration", 3, FeatureKind::fixed}, {"projection", 3, FeatureKind::vector},
+    {"log_mass", 1, FeatureKind::scalar},    {"pinned", 1, FeatureKind::fixed},
+    {"material", 3, FeatureKind::fixed},     {"near_obstacle", 1, FeatureKind::fixed},
+    {"elastic_now", 3, FeatureKind::vector}, {"elastic_base", 3, FeatureKind::vector},
+    {"force_base", 3, FeatureKind::vector},  {"jacobi_base", 3, FeatureKind::vector}};
+
+enum class EdgeFeature { relative_now, strain_now, relative_base, strain_base, log_rest_length };
+inline constexpr FeatureGroup edge_groups[] = {{"relative_now", 3, FeatureKind::vector},
+                                               {"strain_now", 1, FeatureKind::scalar},
+                                               {"relative_base", 3, FeatureKind::vector},
+                                               {"strain_base", 1, FeatureKind::scalar},
+                                               {"log_rest_length", 1, FeatureKind::scalar}};
+
+enum class WorldFeature {
+    relative_now,
+    length_now,
+    relative_next,
+    length_next,
+    body_velocity,
+    body_normal,
+    distance_now,
+    distance_next,
+    nearness
+};
+inline constexpr FeatureGroup world_groups[] = {
+    {"relative_now", 3, FeatureKind::vector},  {"length_now", 1, FeatureKind::scalar},
+    {"relative_next", 3, FeatureKind::vector}, {"length_next", 1, FeatureKind::scalar},
+    {"body_velocity", 3, FeatureKind::vector}, {"body_normal", 3, FeatureKind::fixed},
+    {"distance_now", 1, FeatureKind::scalar},  {"distance_next", 1, FeatureKind::scalar},
+    {"nearness", 1, FeatureKind::fixed}};
+
+enum class BodyFeature { velocity, normal, friction };
+inline constexpr FeatureGroup body_groups[] = {{"velocity", 3, FeatureKind::vector},
+                                               {"normal", 3, FeatureKind::fixed},
+                                               {"friction", 1, FeatureKind::fixed}};
+
+namespace detail {
+
+constexpr const FeatureGroup* groups_of(NodeFeature) {
+    return node_groups;
+}
+constexpr const FeatureGroup* groups_of(EdgeFeature) {
+    return edge_groups;
+}
+constexpr const FeatureGroup* groups_of(WorldFeature) {
+    return world_groups;
+}
+constexpr const FeatureGroup* groups_of(BodyFeature) {
+    return body_groups;
+}
+
+constexpr int columns_of(const FeatureGroup* groups, int count) {
+    int columns = 0;
+    for (int k = 0; k < count; ++k) columns += groups[k].size;
+    return columns;
+}
+
+}  // namespace detail
+
+/// The first column of a group in its matrix.
+template <auto feature>
+constexpr int first_column = detail::columns_of(detail::groups_of(feature),
+                                                static_cast<int>(feature));
 
 FeatureLayout node_layout(bool force_features);
 FeatureLayout edge_layout();

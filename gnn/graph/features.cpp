@@ -18,34 +18,24 @@ float bounded(double value) {
     return std::isfinite(value) ? static_cast<float>(std::clamp(value, -1e4, 1e4)) : 0.0f;
 }
 
-void put(MatrixF& features, Eigen::Index row, int column, const Vec3& value) {
-    for (int k = 0; k < 3; ++k) features(row, column + k) = bounded(value[k]);
+template <auto feature>
+void put(MatrixF& features, Eigen::Index row, const Vec3& value) {
+    for (int k = 0; k < 3; ++k) features(row, first_column<feature> + k) = bounded(value[k]);
 }
 
-void put(MatrixF& features, Eigen::Index row, int column, double value) {
-    features(row, column) = bounded(value);
+template <auto feature>
+void put(MatrixF& features, Eigen::Index row, double value) {
+    features(row, first_column<feature>) = bounded(value);
 }
 
 double log_fraction(double value, double low, double high) {
     return std::log(std::max(value, 1e-12) / low) / std::log(high / low);
 }
 
-/// HOOD's training ranges times its thickness of 0.47 mm (learned_cloth.md, materials).
+/// HOOD's training ranges times its thickness of 0.47 mm.
 Vec3 scaled_material(const Fabric& fabric) {
     return {log_fraction(fabric.bending, 6.37e-8, 1.314e-3), log_fraction(fabric.mu, 7.48, 29.9),
             (fabric.lambda - 1.66) / (43.9 - 1.66)};
-}
-
-void area_weighted_normals(const Points& x, const Faces& faces, Points& normals) {
-    normals.setZero(x.rows(), 3);
-    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
-        const Vec3 a = x.row(faces(f, 0)), b = x.row(faces(f, 1)), c = x.row(faces(f, 2));
-        const Vec3 area = (b - a).cross(c - a);
-        for (int corner = 0; corner < 3; ++corner)
-            normals.row(faces(f, corner)) += area.transpose();
-    }
-    for (Eigen::Index i = 0; i < normals.rows(); ++i)
-        normals.row(i) /= std::max(normals.row(i).norm(), 1e-20);
 }
 
 }  // namespace
@@ -76,8 +66,8 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
     const double dt = potential.dt(), per_metre = 1.0 / features.scale;
     const Eigen::Index count = state.x.rows();
     features.node.resize(count, feature_count(node_layout(m_settings.force_features)));
-    area_weighted_normals(state.x, m_garment->rest().faces, m_normals);
     const bool any_contacts = !potential.contacts().obstacle.empty();
+    vertex_normals(state.x, m_garment->rest().faces, m_normals);
     for (Eigen::Index i = 0; i < count; ++i) {
         const bool pinned = m_garment->is_pinned()[static_cast<size_t>(i)];
         const Vec3 x = state.x.row(i), base = features.base.row(i);
@@ -85,16 +75,18 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
         Vec3 acceleration = boundary.gravity;
         if (boundary.accelerations.rows() == count) acceleration += boundary.accelerations.row(i);
         // A pinned vertex moves by what its target asks for, whatever it did before.
-        put(features.node, i, 0, per_metre * (pinned ? Vec3(base - x) : velocity));
-        put(features.node, i, 3, Vec3(m_normals.row(i)));
-        put(features.node, i, 6, Vec3(per_metre * dt * dt * acceleration));
-        put(features.node, i, 9, pinned ? Vec3::Zero() : squash(per_metre * (base - x - velocity)));
-        put(features.node, i, 12, std::log(m_garment->masses()[i]));
-        put(features.node, i, 13, pinned ? 1.0 : 0.0);
-        put(features.node, i, 14, m_material);
+        put<NodeFeature::velocity>(features.node, i,
+                                   per_metre * (pinned ? Vec3(base - x) : velocity));
+        put<NodeFeature::normal>(features.node, i, Vec3(m_normals.row(i)));
+        put<NodeFeature::acceleration>(features.node, i, Vec3(per_metre * dt * dt * acceleration));
+        put<NodeFeature::projection>(
+            features.node, i, pinned ? Vec3::Zero() : squash(per_metre * (base - x - velocity)));
+        put<NodeFeature::log_mass>(features.node, i, std::log(m_garment->masses()[i]));
+        put<NodeFeature::pinned>(features.node, i, pinned ? 1.0 : 0.0);
+        put<NodeFeature::material>(features.node, i, m_material);
         const bool near = any_contacts && potential.contacts().has(i) &&
                           potential.contacts().distance[i] < m_settings.world_radius;
-        put(features.node, i, 17, near ? 1.0 : 0.0);
+        put<NodeFeature::near_obstacle>(features.node, i, near ? 1.0 : 0.0);
     }
 }
 
@@ -103,23 +95,26 @@ void FeatureBuilder::build_forces(const ClothState& state, const IncrementalPote
     const double dt = potential.dt(), per_metre = 1.0 / features.scale;
     const double stiffness = m_garment->fabric().longitudinal();
     const VectorX& masses = m_garment->masses();
-    const auto put_displacements = [&](int column, const Points& gradient) {
-        for (Eigen::Index i = 0; i < gradient.rows(); ++i)
-            put(features.node, i, column,
-                squash(-dt * dt * per_metre / masses[i] * gradient.row(i).transpose()));
+    const auto displacement = [&](const Points& gradient, Eigen::Index i) {
+        return squash(-dt * dt * per_metre / masses[i] * gradient.row(i).transpose());
     };
+    const Eigen::Index count = state.x.rows();
     potential.elastic_gradient(state.x, m_gradient);
-    put_displacements(18, m_gradient);
+    for (Eigen::Index i = 0; i < count; ++i)
+        put<NodeFeature::elastic_now>(features.node, i, displacement(m_gradient, i));
     potential.elastic_gradient(features.base, m_gradient);
-    put_displacements(21, m_gradient);
+    for (Eigen::Index i = 0; i < count; ++i)
+        put<NodeFeature::elastic_base>(features.node, i, displacement(m_gradient, i));
     at_base.energy = potential.value_gradient(features.base, at_base.gradient);
     const Points& gradient = at_base.gradient;
-    put_displacements(24, gradient);
+    for (Eigen::Index i = 0; i < count; ++i)
+        put<NodeFeature::force_base>(features.node, i, displacement(gradient, i));
     // The step of one Jacobi iteration of the quasi-Newton matrix M/dt^2 + (2 mu + lambda) L.
     for (Eigen::Index i = 0; i < gradient.rows(); ++i) {
         const double diagonal =
             masses[i] / (dt * dt) + stiffness * std::max(0.0, m_graph->laplacian_diagonal[i]);
-        put(features.node, i, 27, squash(-per_metre / diagonal * gradient.row(i).transpose()));
+        put<NodeFeature::jacobi_base>(
+            features.node, i, squash(-per_metre / diagonal * gradient.row(i).transpose()));
     }
 }
 
@@ -131,11 +126,11 @@ void FeatureBuilder::build_edges(const ClothState& state, Features& features) co
         const double rest = m_graph->rest_length[e];
         const Vec3 now = (state.x.row(j) - state.x.row(i)) / rest;
         const Vec3 next = (features.base.row(j) - features.base.row(i)) / rest;
-        put(features.edge, e, 0, now);
-        put(features.edge, e, 3, now.norm() - 1.0);
-        put(features.edge, e, 4, next);
-        put(features.edge, e, 7, next.norm() - 1.0);
-        put(features.edge, e, 8, std::log(rest));
+        put<EdgeFeature::relative_now>(features.edge, e, now);
+        put<EdgeFeature::strain_now>(features.edge, e, now.norm() - 1.0);
+        put<EdgeFeature::relative_base>(features.edge, e, next);
+        put<EdgeFeature::strain_base>(features.edge, e, next.norm() - 1.0);
+        put<EdgeFeature::log_rest_length>(features.edge, e, std::log(rest));
     }
 }
 
@@ -158,22 +153,22 @@ void FeatureBuilder::build_world(const ClothState& state, const Boundary& bounda
         const Vec3 velocity = contacts.point1.row(i) - contacts.point0.row(i);
         const Vec3 normal = contacts.normal1.row(i);
         const double distance = next.dot(normal);
-        put(features.world, i, 0, per_metre * now);
-        put(features.world, i, 3, per_metre * now.norm());
-        put(features.world, i, 4, per_metre * next);
-        put(features.world, i, 7, per_metre * next.norm());
-        put(features.world, i, 8, per_metre * velocity);
-        put(features.world, i, 11, normal);
-        put(features.world, i, 14, per_metre * contacts.distance[i]);
-        put(features.world, i, 15, per_metre * distance);
-        // Contact is felt within a fraction of eps: resolved apart from the distance in
+        put<WorldFeature::relative_now>(features.world, i, per_metre * now);
+        put<WorldFeature::length_now>(features.world, i, per_metre * now.norm());
+        put<WorldFeature::relative_next>(features.world, i, per_metre * next);
+        put<WorldFeature::length_next>(features.world, i, per_metre * next.norm());
+        put<WorldFeature::body_velocity>(features.world, i, per_metre * velocity);
+        put<WorldFeature::body_normal>(features.world, i, normal);
+        put<WorldFeature::distance_now>(features.world, i, per_metre * contacts.distance[i]);
+        put<WorldFeature::distance_next>(features.world, i, per_metre * distance);
+        // Contact acts within a fraction of eps: resolved apart from the distance in
         // centimetres.
-        put(features.world, i, 16, std::tanh((distance - eps) / (0.25 * eps)));
-        put(features.body, i, 0, per_metre * velocity);
-        put(features.body, i, 3, normal);
+        put<WorldFeature::nearness>(features.world, i, std::tanh((distance - eps) / (0.25 * eps)));
+        put<BodyFeature::velocity>(features.body, i, per_metre * velocity);
+        put<BodyFeature::normal>(features.body, i, normal);
         const auto& obstacle =
             boundary.obstacles[static_cast<size_t>(contacts.obstacle[static_cast<size_t>(i)])];
-        put(features.body, i, 6, obstacle.friction);
+        put<BodyFeature::friction>(features.body, i, obstacle.friction);
     }
 }
 

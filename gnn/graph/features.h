@@ -8,7 +8,7 @@
 
 namespace cloth {
 
-/// What the network is told; part of the model's configuration, equal in training and use.
+/// Which features the network has; part of the model's configuration, equal in training and use.
 struct FeatureSettings {
     bool force_features =
         true;  ///< forces at x_t and at the base guess, besides the paper's features

@@ -17,7 +17,7 @@ enum class LossKind {
 /// @throws ArgumentError unless `name` is energy, log or both
 LossKind loss_named(const std::string& name);
 
-/// The step that a prediction is judged by.
+/// The step that a prediction is scored on.
 struct LossProblem {
     const IncrementalPotential* potential = nullptr;
     const Eigen::SparseMatrix<double>* laplacian = nullptr;  ///< cotangent, |V| x |V|

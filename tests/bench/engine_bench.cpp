@@ -29,7 +29,7 @@
 #include "tests/bench/torch_bench.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth::bench {
+namespace cloth::test {
 namespace {
 
 const TshirtMoment& moment() {
@@ -216,12 +216,12 @@ void register_networks() {
 }
 
 }  // namespace
-}  // namespace cloth::bench
+}  // namespace cloth::test
 
 int main(int argc, char** argv) {
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-    using namespace cloth::bench;
+    using namespace cloth::test;
     std::printf("fused multiply-add peak: %.0f GFLOP/s on one core, %.0f on two\n", 1e-9 * peak(1),
                 1e-9 * peak(2));
     for (const int d : {32, 64, 128})

@@ -10,7 +10,7 @@
 #include "gnn/physics/stepper/guess.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 
-namespace cloth::bench {
+namespace cloth::test {
 namespace {
 
 constexpr double dt = 1.0 / 30.0;
@@ -88,4 +88,4 @@ NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input)
     return flops;
 }
 
-}  // namespace cloth::bench
+}  // namespace cloth::test

@@ -5,7 +5,7 @@
 #include "gnn/graph/features.h"
 #include "gnn/model/model_config.h"
 
-namespace cloth::bench {
+namespace cloth::test {
 
 /// The T-shirt (3,991 vertices) as it hangs on the default body, half a second into motion 01_01.
 /// Without assimp-testmodels: on a sphere that fills it.
@@ -32,4 +32,4 @@ struct NetworkFlops {
 };
 NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input);
 
-}  // namespace cloth::bench
+}  // namespace cloth::test

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <functional>
 
-namespace cloth::bench {
+namespace cloth::test {
 namespace {
 
 constexpr int chains = 12;  // enough to hide the latency of two units
@@ -92,4 +92,4 @@ double plain_product(int rows, int k, int n) {
     return best;
 }
 
-}  // namespace cloth::bench
+}  // namespace cloth::test

@@ -6,7 +6,7 @@
 
 #include "demos/compare/memory.h"
 
-namespace cloth::bench {
+namespace cloth::test {
 
 /// How much the process grew by at most while `work` ran (MB of 1e6 bytes).
 inline double peak_memory_of(const std::function<void()>& work) {
@@ -17,4 +17,4 @@ inline double peak_memory_of(const std::function<void()>& work) {
     return peak_memory_mb() - before;
 }
 
-}  // namespace cloth::bench
+}  // namespace cloth::test

@@ -4,7 +4,7 @@
 #include "tests/bench/peak_memory.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth::bench {
+namespace cloth::test {
 
 void register_torch(const std::string& name, const ModelConfig& config,
                     std::function<const TshirtMoment*()> moment,
@@ -24,4 +24,4 @@ void register_torch(const std::string& name, const ModelConfig& config,
     benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();
 }
 
-}  // namespace cloth::bench
+}  // namespace cloth::test

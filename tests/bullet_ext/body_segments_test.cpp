@@ -3,7 +3,7 @@
 #include "bullet_ext/bodySegments.h"
 #include "bullet_ext/bulletShapes.h"
 #include "data/core/errors.h"
-#include "tests/bullet_ext/test_meshes.h"
+#include "tests/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;

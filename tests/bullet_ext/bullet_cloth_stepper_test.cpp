@@ -6,7 +6,7 @@
 
 #include "bullet_ext/bulletClothStepper.h"
 #include "data/core/errors.h"
-#include "tests/bullet_ext/test_meshes.h"
+#include "tests/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;

@@ -11,7 +11,7 @@
 #include "bullet_ext/garmentSoftBody.h"
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
-#include "tests/bullet_ext/test_meshes.h"
+#include "tests/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;

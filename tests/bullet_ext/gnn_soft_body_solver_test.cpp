@@ -8,7 +8,7 @@
 #include "bullet_ext/garmentSoftBody.h"
 #include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
-#include "tests/bullet_ext/test_meshes.h"
+#include "tests/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;

@@ -1,4 +1,4 @@
-// What dynamic rigid bodies feel of the cloth: momentum is the judge.
+// What dynamic rigid bodies feel of the cloth, checked by the balance of momentum.
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include "tests/fuzz/fuzz_meshes.h"
 #include "tests/fuzz/fuzz_steppers.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 struct Scene {
@@ -103,4 +103,4 @@ TEST(BoundariesFuzz, TheNumberOfThreadsDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -9,7 +9,7 @@
 #include "tests/fuzz/fuzz_bullet.h"
 #include "tests/fuzz/fuzz_steppers.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr int kMaxTicks = 64;  // of one body in one step, whatever the time step and time scale
@@ -110,4 +110,4 @@ TEST(BulletFuzz, NothingCrashesTheWorldOrFreezesOthers) {
 }
 
 }  // namespace
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

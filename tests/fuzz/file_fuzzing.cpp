@@ -13,7 +13,7 @@
 #include "tests/fuzz/file_mutations.h"
 #include "tests/fuzz/memory_meter.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -128,4 +128,4 @@ void fuzz_files(const FileFormat& format) {
     });
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

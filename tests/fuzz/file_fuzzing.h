@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// A kind of file and how the project reads it.
 struct FileFormat {
@@ -18,4 +18,4 @@ struct FileFormat {
 /// of what is no file.
 void fuzz_files(const FileFormat& format);
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 using Mutation = void (*)(std::string&, Random&);
@@ -177,4 +177,4 @@ std::string mutated(const std::string& file, Random& random) {
     return result;
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

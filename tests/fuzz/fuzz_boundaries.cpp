@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -90,7 +90,7 @@ Obstacle random_mesh_obstacle(Random& random, const Vec3& near_by) {
     TriMesh mesh = random.chance(0.5) ? test::icosphere(random.between(0, 2)) : test::cube();
     if (random.chance(0.2)) mesh = test::triangle_soup(mesh);
     mesh.vertices *= random.uniform(0.02, 0.2);
-    mesh.vertices = test::transformed(mesh.vertices, random_pose(random, near_by));
+    mesh.vertices = transformed(mesh.vertices, random_pose(random, near_by));
     return test::mesh_obstacle(mesh);
 }
 
@@ -168,4 +168,4 @@ double random_time_step(Random& random) {
         {1.0 / 240.0, 1e-9, 10.0, 0.0, -0.1, nan, infinity, 1e-300, 1e300});
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -4,7 +4,7 @@
 #include "data/core/cloth_state.h"
 #include "tests/fuzz/fuzz_random.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// Obstacles of all shapes near the garment, pin targets near the pins; often with defects: sizes
 /// of 0, 1e-9, 1e6 and NaN, meshes with bad indices, flipped, crossing themselves or of another
@@ -18,4 +18,4 @@ ClothState random_state(const Garment& garment, Random& random);
 /// Usual time steps, and 0, negative, 1e-9, 10, NaN.
 double random_time_step(Random& random);
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

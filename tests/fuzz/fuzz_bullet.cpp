@@ -6,7 +6,7 @@
 #include "data/core/errors.h"
 #include "tests/fuzz/fuzz_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
@@ -344,7 +344,7 @@ void WorldMeddler::move_rigid_body(btRigidBody& body) {
     if (m_random.chance(0.3)) return body.setLinearVelocity(vector(m_random, 3));
     btTransform to = random_transform(m_random, 0.7);
     const btVector3 spoilt = m_random.chance(0.05) ? numbers(m_random, 1) : to.getOrigin();
-    if (!body.isStaticObject()) to.setOrigin(spoilt);  // else it spoils the broadphase
+    if (!body.isStaticObject()) to.setOrigin(spoilt);  // else it damages the broadphase
     body.setWorldTransform(to);
     body.activate();
 }
@@ -368,4 +368,4 @@ void WorldMeddler::meddle() {
     ask_the_solver(body);
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -5,7 +5,7 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/fuzz/fuzz_random.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// A patch, a mesh or a body made by hand near the origin; often with a defect: duplicate faces,
 /// nodes without a face, faces without area, NaN, masses that are zero, infinite or negative.
@@ -48,4 +48,4 @@ class WorldMeddler {
     std::vector<btRigidBody*> m_rigid;
 };
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

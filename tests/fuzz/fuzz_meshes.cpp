@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 using Defect = void (*)(TriMesh&, Random&);
@@ -172,4 +172,4 @@ std::vector<int> random_pins(Random& random, int count) {
     return pins;
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -3,7 +3,7 @@
 #include "data/core/garment.h"
 #include "tests/fuzz/fuzz_random.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// A surface of a few dozen faces: sheets, closed bodies, single triangles, several pieces, soups
 /// of triangles; often with a defect (see fuzz_meshes.cpp), 1 mm to 1 km wide, anywhere.
@@ -18,4 +18,4 @@ Fabric random_fabric(Random& random);
 /// None, some or all of `count` vertices; now and then one that is not there.
 std::vector<int> random_pins(Random& random, int count);
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// Random choices of one round, the same on every platform (the distributions of the standard
 /// library are not).
@@ -55,4 +55,4 @@ inline std::string repeat_with(unsigned seed) {
     return "repeat with CLOTH_FUZZ_ROUNDS=1 CLOTH_FUZZ_SEED=" + std::to_string(seed);
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -8,7 +8,7 @@
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 std::unique_ptr<Stepper> quasi_newton(const Garment& garment) {
@@ -111,4 +111,4 @@ std::string checked_step(Stepper& stepper, const Garment& garment, const Boundar
     }
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -7,7 +7,7 @@
 
 #include "gnn/stepper.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 struct StepperKind {
     std::string name;
@@ -30,4 +30,4 @@ std::string broken_promise(const Garment& garment, const Boundary& boundary,
 std::string checked_step(Stepper& stepper, const Garment& garment, const Boundary& boundary,
                          double dt, ClothState& state);
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

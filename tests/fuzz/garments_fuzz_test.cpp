@@ -5,11 +5,11 @@
 #include <memory>
 
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
 #include "tests/fuzz/fuzz_meshes.h"
 #include "tests/fuzz/fuzz_steppers.h"
+#include "tests/test_meshes.h"
 
-namespace cloth::fuzz {
+namespace cloth::test {
 namespace {
 
 constexpr int frames = 5;
@@ -33,13 +33,6 @@ Obstacle ball_in(const TriMesh& mesh) {
     ball.pose0.translation() = 0.5 * (low + high);
     ball.pose1 = ball.pose0;
     return ball;
-}
-
-Points rows_of(const Points& all, const std::vector<int>& rows) {
-    Points chosen(static_cast<Eigen::Index>(rows.size()), 3);
-    for (size_t k = 0; k < rows.size(); ++k)
-        chosen.row(static_cast<Eigen::Index>(k)) = all.row(rows[k]);
-    return chosen;
 }
 
 void step_with_all(const Garment& garment, const Boundary& boundary) {
@@ -69,7 +62,7 @@ TEST(GarmentsFuzz, AreRefusedByNameOrStepped) {
         }
         ++stepped;
         Boundary boundary;
-        boundary.pin_targets = rows_of(garment->rest().vertices, garment->pins());
+        boundary.pin_targets = garment->rest().vertices(garment->pins(), Eigen::all);
         if (random.chance(0.5)) boundary.obstacles.push_back(ball_in(garment->rest()));
         step_with_all(*garment, boundary);
     });
@@ -88,4 +81,4 @@ TEST(GarmentsFuzz, FabricsOutOfRangeAreRefusedByField) {
 }
 
 }  // namespace
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

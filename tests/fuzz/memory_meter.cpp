@@ -108,7 +108,7 @@ void free(void* memory) {
 
 #endif
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 MemoryMeter::MemoryMeter() : m_start(held) {
     highest = m_start;
@@ -118,4 +118,4 @@ std::size_t MemoryMeter::peak() const {
     return static_cast<std::size_t>(highest - m_start);
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

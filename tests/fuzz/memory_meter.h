@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 /// How much memory the program asks for: malloc is watched, whoever calls it.
 ///
@@ -21,4 +21,4 @@ class MemoryMeter {
     long long m_start;
 };
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace cloth::fuzz {
+namespace cloth::test {
 
 std::string obj_file() {
     return "# two pieces\nmtllib none.mtl\no quad\nv 0.1 0 0\nv 1 0 0\nv 1 1 0.25\nv 0 1 0\n"
@@ -265,4 +265,4 @@ std::string shape_target_file() {
     return "# a target\n0 .001 -.02 0.5\n7 1e-3 0 0\n19 0 0.25 -1.5\n";
 }
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -3,7 +3,7 @@
 #include <string>
 
 /// Small valid files, made here, with what real ones have.
-namespace cloth::fuzz {
+namespace cloth::test {
 
 std::string obj_file();  ///< groups, quads, texture coordinates, normals, indices from the end
 std::string ascii_ply_file();
@@ -18,4 +18,4 @@ std::string tshirt_recipe_file();
 std::string rig_recipe_file();
 std::string shape_target_file();
 
-}  // namespace cloth::fuzz
+}  // namespace cloth::test

@@ -10,8 +10,7 @@
 #include "data/body/body.h"
 #include "data/core/paths.h"
 #include "gnn/model/engine.h"
-#include "gnn/physics/stepper/guarded_stepper.h"
-#include "gnn/physics/stepper/quasi_newton_stepper.h"
+#include "gnn/model/make_cloth.h"
 #include "render/osmesa_renderer.h"
 #include "render/renderer.h"
 

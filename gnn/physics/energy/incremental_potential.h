@@ -104,8 +104,8 @@ class IncrementalPotential {
     const FrictionEnergy& friction() const { return m_friction; }             ///< of this step
     const SelfContactEnergy& self_contact() const { return m_self_contact; }  ///< of this step
 
-    /// Moves a starting guess (|V| x 3, pins in place) whose layers are too near or have passed
-    /// through each other apart again, and off the obstacles. Without pairs of layers it does
+    /// Moves a starting guess (|V| x 3, pins in place) that is too near to itself, or has passed
+    /// through itself, apart again, and off the obstacles. Without self-contact it does
     /// nothing.
     void separate_self_contact(Points& guess) const;
 

@@ -6,9 +6,9 @@
 namespace cloth {
 namespace {
 
-// What may be added to the motion with the velocities at t, in thicknesses. Layers that come nearer
-// by more, such as by a frame's free fall, are left to contact projection: to look for them here
-// makes a step twice as expensive and saves it few frames.
+// What may be added to the motion with the velocities at t, in thicknesses. Cloth that comes nearer
+// by more, such as by a frame's free fall, is left to contact projection: to look for it here
+// makes a step twice as expensive and saves few frames.
 constexpr double slack = 0.5;
 constexpr double entry_depth = 1e-4;  // m, per trial step; see ContactHessian
 

@@ -51,18 +51,18 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
 void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
                                         const std::vector<int>& row_of) {
     m_self = &energy;
-    m_layers.clear();
+    m_self_contacts.clear();
     for (const SelfContactEnergy::Pair& pair : energy.pairs()) {
-        Layers layers{{}, pair.weight, pair.normal, pair.stiffness};
+        SelfContact contact{{}, pair.weight, pair.normal, pair.stiffness};
         for (size_t k = 0; k < 4; ++k) {
-            layers.row[k] = row_of[static_cast<size_t>(pair.vertex[k])];
-            if (layers.row[k] < 0) layers.weight[k] = 0.0;
+            contact.row[k] = row_of[static_cast<size_t>(pair.vertex[k])];
+            if (contact.row[k] < 0) contact.weight[k] = 0.0;
         }
-        m_layers.push_back(layers);
+        m_self_contacts.push_back(contact);
     }
 }
 
-double ContactHessian::Layers::along(const Points& direction) const {
+double ContactHessian::SelfContact::along(const Points& direction) const {
     double sum = 0.0;
     for (size_t k = 0; k < 4; ++k)
         if (weight[k] != 0.0) sum += weight[k] * direction.row(row[k]).dot(normal.transpose());
@@ -88,12 +88,12 @@ void ContactHessian::linearise(const IncrementalPotential& potential, const Poin
         m_sliders[k].stiffness =
             slider.force / std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
     }
-    if (m_layers.empty()) return;
+    if (m_self_contacts.empty()) return;
     m_from = x;
-    for (size_t k = 0; k < m_layers.size(); ++k) {
-        Layers& layers = m_layers[k];
-        layers.depth = m_self->thickness() - m_self->pairs()[k].distance(x);
-        layers.stiffness = 6.0 * layers.contact * std::max(layers.depth, 0.0);
+    for (size_t k = 0; k < m_self_contacts.size(); ++k) {
+        SelfContact& contact = m_self_contacts[k];
+        contact.depth = m_self->thickness() - m_self->pairs()[k].distance(x);
+        contact.stiffness = 6.0 * contact.pair_weight * std::max(contact.depth, 0.0);
     }
 }
 
@@ -119,11 +119,11 @@ bool ContactHessian::anticipate(const Points& step) {
                               (after - before);
         any = any || ridge.stiffness > 0.0;
     }
-    for (Layers& layers : m_layers) {
-        const double before = std::max(layers.depth, 0.0);
-        const double after = layers.depth - layers.along(step);
-        if (after > before) layers.stiffness = secant(layers.contact, before, after);
-        any = any || layers.stiffness > 0.0;
+    for (SelfContact& contact : m_self_contacts) {
+        const double before = std::max(contact.depth, 0.0);
+        const double after = contact.depth - contact.along(step);
+        if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
+        any = any || contact.stiffness > 0.0;
     }
     return any;
 }
@@ -153,12 +153,12 @@ void ContactHessian::add_product(const Points& direction, Points& product) const
         const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
         product.row(slider.row) += slider.stiffness * tangential.transpose();
     }
-    for (const Layers& layers : m_layers) {
-        if (layers.stiffness == 0.0) continue;
+    for (const SelfContact& contact : m_self_contacts) {
+        if (contact.stiffness == 0.0) continue;
         const Eigen::RowVector3d force =
-            layers.stiffness * layers.along(direction) * layers.normal.transpose();
+            contact.stiffness * contact.along(direction) * contact.normal.transpose();
         for (size_t k = 0; k < 4; ++k)
-            if (layers.weight[k] != 0.0) product.row(layers.row[k]) += layers.weight[k] * force;
+            if (contact.weight[k] != 0.0) product.row(contact.row[k]) += contact.weight[k] * force;
     }
 }
 
@@ -169,7 +169,7 @@ void ContactHessian::limit_depth(Points& trial) const {
         if (depth > limit)
             trial.row(contact.vertex) += (depth - limit) * contact.normal.transpose();
     }
-    if (!m_layers.empty()) m_self->limit_entry(m_from, trial);
+    if (!m_self_contacts.empty()) m_self->limit_entry(m_from, trial);
 }
 
 }  // namespace cloth

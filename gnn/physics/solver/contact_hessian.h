@@ -41,9 +41,10 @@ class ContactHessian {
     /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
     void limit_depth(Points& trial) const;
 
-    /// Whether any obstacle, or any other layer of the cloth, is near enough to matter.
+    /// Whether any obstacle, or any other part of the cloth, is near enough to matter.
     bool active() const {
-        return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() || !m_layers.empty();
+        return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() ||
+               !m_self_contacts.empty();
     }
 
  private:
@@ -69,11 +70,11 @@ class ContactHessian {
         double stiffness = 0.0;  ///< (N/m)
     };
 
-    struct Layers {
+    struct SelfContact {
         std::array<int, 4> row;        ///< -1: a pin
         std::array<double, 4> weight;  ///< 0 for a pin
         Vec3 normal;
-        double contact;          ///< w of this pair (N/m^2)
+        double pair_weight;      ///< w of this pair (N/m^2)
         double depth = 0.0;      ///< (m)
         double stiffness = 0.0;  ///< (N/m)
 
@@ -88,10 +89,10 @@ class ContactHessian {
     std::vector<Contact> m_contacts;
     std::vector<Ridge> m_ridges;
     std::vector<Slider> m_sliders;
-    std::vector<size_t> m_slider_index;  ///< of the potential's friction().sliders()
-    std::vector<Layers> m_layers;        ///< the potential's self_contact().pairs()
+    std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
+    std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
     const SelfContactEnergy* m_self = nullptr;
-    Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there are layers
+    Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there is self-contact
 };
 
 }  // namespace cloth

@@ -172,7 +172,7 @@ double Newton::try_step(const IncrementalPotential& potential, const Points& x, 
 }
 
 /// Leaves the accepted position in m_trial, its gradient in m_trial_gradient and its energy in the
-/// report. Returns the step length, 0: none was found. Where the decrease drowns in rounding, a
+/// report. Returns the step length, 0: none was found. Where the decrease is below rounding, a
 /// smaller gradient counts instead.
 double Newton::line_search(const IncrementalPotential& potential, const Points& x,
                            MinimiseReport& report) {
@@ -194,7 +194,7 @@ double Newton::line_search(const IncrementalPotential& potential, const Points& 
 }
 
 /// Doubles an accepted full step as long as the energy falls at nearly the old slope: where the
-/// Hessian was projected, cloth that buckles wants to go much farther than the model says.
+/// Hessian was projected, the minimum of cloth that buckles is much farther than the model says.
 double Newton::widen(const IncrementalPotential& potential, const Points& x, double slope,
                      MinimiseReport& report) {
     double step = 1.0;

@@ -160,7 +160,7 @@ void QuasiNewton::find_direction(const IncrementalPotential& potential, const Po
 bool QuasiNewton::line_search(const IncrementalPotential& potential, Points& x,
                               MinimiseReport& report) {
     const double slope = dot(m_gradient, m_direction);
-    // Below this the decrease drowns in the rounding of E.
+    // Below this the decrease is lost in the rounding of E.
     const double resolution = std::numeric_limits<double>::epsilon() * std::abs(report.energy);
     if (!(-slope > resolution)) return false;
     double step = 1.0;

@@ -1,15 +1,9 @@
 #include "gnn/physics/stepper/boundary_part.h"
 
+#include "data/core/pose.h"
+
 namespace cloth {
 namespace {
-
-Pose between(const Pose& a, const Pose& b, double s) {
-    Pose pose = Pose::Identity();
-    pose.translation() = (1.0 - s) * a.translation() + s * b.translation();
-    pose.linear() =
-        Eigen::Quaterniond(a.linear()).slerp(s, Eigen::Quaterniond(b.linear())).toRotationMatrix();
-    return pose;
-}
 
 /// The part [s0, s1] of an obstacle's motion.
 void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
@@ -31,8 +25,8 @@ void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
         vertices(s0, part.x0);
         vertices(s1, part.x1);
     }
-    part.pose0 = s0 <= 0.0 ? whole.pose0 : between(whole.pose0, whole.pose1, s0);
-    part.pose1 = s1 >= 1.0 ? whole.pose1 : between(whole.pose0, whole.pose1, s1);
+    part.pose0 = interpolate(whole.pose0, whole.pose1, s0);
+    part.pose1 = interpolate(whole.pose0, whole.pose1, s1);
 }
 
 }  // namespace

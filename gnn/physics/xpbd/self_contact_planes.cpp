@@ -5,11 +5,11 @@
 namespace cloth {
 
 SelfContactPlanes::SelfContactPlanes(const Garment& garment, const SelfContactSettings& settings)
-    : m_layers(garment, settings), m_inverse_masses(garment.inverse_masses()) {
+    : m_energy(garment, settings), m_inverse_masses(garment.inverse_masses()) {
 }
 
 void SelfContactPlanes::project(PaddedPoints& x) const {
-    for (const SelfContactEnergy::Pair& pair : m_layers.pairs()) {
+    for (const SelfContactEnergy::Pair& pair : m_energy.pairs()) {
         Eigen::RowVector4d offset = Eigen::RowVector4d::Zero();
         double mobility = 0.0;
         for (size_t k = 0; k < 4; ++k) {
@@ -17,7 +17,7 @@ void SelfContactPlanes::project(PaddedPoints& x) const {
             mobility += pair.weight[k] * pair.weight[k] * m_inverse_masses[pair.vertex[k]];
         }
         const double distance = offset.head<3>().dot(pair.normal.transpose());
-        const double missing = std::min(m_layers.thickness(), pair.start) - distance;
+        const double missing = std::min(m_energy.thickness(), pair.start) - distance;
         if (!(missing > 0.0 && mobility > 0.0)) continue;
         const Eigen::RowVector3d push = missing / mobility * pair.normal.transpose();
         for (size_t k = 0; k < 4; ++k)

@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-/// The layers of a garment as a step in substeps sees them: pairs of elements, found once per step,
+/// The self-contact of a garment in a step with substeps: pairs of elements, found once per step,
 /// that are held apart as positions.
 class SelfContactPlanes {
  public:
@@ -15,14 +15,14 @@ class SelfContactPlanes {
     /// @throws ArgumentError if a setting is out of range
     SelfContactPlanes(const Garment& garment, const SelfContactSettings& settings);
 
-    void begin_step(const ClothState& state, double dt) { m_layers.begin_step(state, dt); }
+    void begin_step(const ClothState& state, double dt) { m_energy.begin_step(state, dt); }
 
     /// Moves pairs that are nearer than the thickness, or than at t where that is less, apart
     /// again, one after the other. Keeps linear momentum; pinned vertices stay.
     void project(PaddedPoints& x) const;
 
  private:
-    SelfContactEnergy m_layers;
+    SelfContactEnergy m_energy;
     VectorX m_inverse_masses;  ///< |V| (1/kg), 0 for pins
 };
 

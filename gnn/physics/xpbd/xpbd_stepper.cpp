@@ -48,7 +48,7 @@ XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
                 settings.relaxation),
       m_proximity(proximity),
       m_resolver(garment),
-      m_layers(garment, settings.self_contact),
+      m_self_planes(garment, settings.self_contact),
       m_self_contact(garment, settings.self_contact) {
 }
 
@@ -102,7 +102,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_prepared_dt = dt;
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
-    m_layers.begin_step(state, dt);
+    m_self_planes.begin_step(state, dt);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;
     if (same_points(state.x, m_last_x))
@@ -139,7 +139,7 @@ void XpbdStepper::run(const Boundary& boundary, double dt, const Points& x0) {
         for (int k = 0; k < m_settings.iterations; ++k) {
             m_stretch.relax(m_p, k == 0);
             m_bending.relax(m_p, k == 0);
-            m_layers.project(m_p);
+            m_self_planes.project(m_p);
             m_planes.project(m_before, m_p);
         }
         m_w = (m_settings.substeps / dt) * (m_p - m_before);
@@ -164,7 +164,7 @@ void XpbdStepper::move_pins(const Boundary& boundary, const Points& x0, double p
     }
 }
 
-/// Vertices that the layers' safety moved go on with their mean velocity.
+/// Vertices that self-contact projection moved go on with their mean velocity.
 void XpbdStepper::finish_self_contact(const Boundary& boundary, double dt, const ClothState& state,
                                       StepReport& report) {
     m_v = m_x;

@@ -3,7 +3,7 @@
 #include "collision/response/contact_projection.h"
 #include "gnn/physics/stepper/self_contact_projection.h"
 #include "gnn/physics/xpbd/distance_constraints.h"
-#include "gnn/physics/xpbd/riding_planes.h"
+#include "gnn/physics/xpbd/moving_planes.h"
 #include "gnn/physics/xpbd/self_contact_planes.h"
 #include "gnn/stepper.h"
 
@@ -13,7 +13,7 @@ struct XpbdSettings {
     int substeps = 20;   ///< per step, 1 to 1000; cost and stiffness grow with it: with few, stiff
                          ///< cloth stretches like rubber
     int iterations = 1;  ///< over all constraints per substep, 1 to 100; more substeps are the
-                         ///< better buy (Macklin et al. 2019)
+                         ///< better use of time (Macklin et al. 2019)
     /// Of constraints, 1 to 1.3. 1.2 brings 20 and 40 substeps nearer to the reference than 1; from
     /// 1.4 on stiff cloth explodes.
     double relaxation = 1.2;
@@ -33,7 +33,7 @@ struct XpbdSettings {
 ///     XpbdStepper stepper(garment, settings);
 ///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
 ///
-/// Obstacles are queried once per step and ride along as planes; pins move linearly; a contact
+/// Obstacles are queried once per step and move along as planes; pins move linearly; a contact
 /// projection leaves nothing inside an obstacle. Accepts any time step.
 ///
 /// ClothState has the mean velocity over a step, which lags behind the velocity at its end, from
@@ -72,8 +72,8 @@ class XpbdStepper : public Stepper {
     Proximity m_proximity;
     ContactProjection m_resolver;
     SurfaceContacts m_contacts;
-    RidingPlanes m_planes;
-    SelfContactPlanes m_layers;
+    MovingPlanes m_planes;
+    SelfContactPlanes m_self_planes;
     SelfContactProjection m_self_contact;
     PaddedPoints m_p, m_w, m_before;  ///< of the substep: positions, velocities, start
     Points m_x, m_v;                  ///< |V| x 3: at the end of the step; the mean velocity (m/s)

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "collision/proximity/brute_force.h"
 #include "data/authoring/sheet.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
@@ -70,7 +70,7 @@ SampledWay sample_way(const Obstacle& mesh, const Vec3& p0, const Vec3& p1) {
         way.depth = std::max(way.depth, -distance);
         if ((distance < 0) == inside) continue;
         inside = !inside;
-        const auto corner = now.faces.row(brute_force_closest(now, p).face);
+        const auto corner = now.faces.row(brute_force_closest(now, p)->face);
         const Vec3 a = mesh.x1.row(corner[0]), b = mesh.x1.row(corner[1]),
                    c = mesh.x1.row(corner[2]);
         const Vec3 normal = (b - a).cross(c - a).normalized();

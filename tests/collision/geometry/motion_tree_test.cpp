@@ -6,7 +6,7 @@
 #include <set>
 
 #include "collision/ccd/fcl_sweep.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
@@ -88,7 +88,7 @@ TEST(LimbOverlap, LeavesABodyWithoutOverlapAlone) {
     EXPECT_TRUE(limbs.ignored().empty());
 }
 
-TEST(LimbOverlap, AllClothIgnoresABuriedLimbUntilItIsClear) {
+TEST(LimbOverlap, AllClothIgnoresACoveredLimbUntilItIsClear) {
     const TwoLimbs body(false);
     LimbOverlap limbs;
     const ClothState state = shell();

@@ -8,7 +8,7 @@
 #include "collision/proximity/brute_force.h"
 #include "collision/proximity/proximity.h"
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
@@ -76,18 +76,18 @@ TEST(Limbs, QueriesPassOverThoseThatAreIgnored) {
         for (int i = 0; i < x.rows(); ++i) {
             const LimbSet passed_over = ignored[static_cast<size_t>(i)];
             const TriMesh rest = without(mesh, *obstacle.limbs, passed_over);
-            const SurfacePoint expected = brute_force_closest(rest, x.row(i));
-            if (expected.face < 0 || expected.distance > 0.4) {
+            const auto expected = brute_force_closest(rest, x.row(i));
+            if (!expected || expected->distance > 0.4) {
                 EXPECT_FALSE(contacts.has(i));
                 continue;
             }
             if (!contacts.has(i)) {
-                EXPECT_TRUE(is_on_border(rest, mesh, *obstacle.limbs, passed_over, expected));
+                EXPECT_TRUE(is_on_border(rest, mesh, *obstacle.limbs, passed_over, *expected));
                 ++at_border;
                 continue;
             }
             ++found;
-            EXPECT_NEAR(std::abs(contacts.distance[i]), expected.distance, 1e-12);
+            EXPECT_NEAR(std::abs(contacts.distance[i]), expected->distance, 1e-12);
             const auto limb = (*obstacle.limbs)[size_t(contacts.face[size_t(i)])];
             EXPECT_EQ((passed_over >> limb) & 1u, 0u);
         }
@@ -165,20 +165,20 @@ TEST(Limbs, CoverIsWhatLiesOverAPoint) {
     proximity.query(x, boundary_of({obstacle}), contacts);
     int covered = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const auto [cover, by] = proximity.cover(contacts, i, StepEnd::start);
-        EXPECT_EQ(cover > 0.0, by >= 0);
+        const auto cover = proximity.cover(contacts, i, StepEnd::start);
         const Vec3 from = x.row(i) / 1.001, up = from / radius;
         const double away = (from - centre).norm();
         if (away > 0.205) {
-            EXPECT_EQ(cover, 0.0);
+            EXPECT_FALSE(cover);
         }
         if (away > 0.195 || contacts.face[size_t(i)] >= ball.faces.rows()) continue;
         ++covered;
-        EXPECT_GE(by, ball.faces.rows()) << "the other ball";
-        EXPECT_EQ(proximity.cover(contacts, i, StepEnd::start, /*ignored=*/2).face, -1);
+        ASSERT_TRUE(cover);
+        EXPECT_GE(cover->face, ball.faces.rows()) << "the other ball";
+        EXPECT_FALSE(proximity.cover(contacts, i, StepEnd::start, /*ignored=*/2));
         const double along = (centre - from).dot(up);
         const double exit = along + std::sqrt(along * along + radius * radius - away * away);
-        EXPECT_NEAR(cover, exit, 0.01) << "point " << i;
+        EXPECT_NEAR(cover->depth, exit, 0.01) << "point " << i;
     }
     EXPECT_GT(covered, 20);
 }

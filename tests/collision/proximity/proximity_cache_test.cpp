@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/proximity/proximity.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

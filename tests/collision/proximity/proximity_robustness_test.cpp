@@ -5,7 +5,7 @@
 #include "collision/proximity/brute_force.h"
 #include "collision/proximity/proximity.h"
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
@@ -101,7 +101,7 @@ TEST(ProximityRobustness, VerticesThatAreNotFiniteOnlyTakeTheirFaces) {
             if (!contacts.has(i)) continue;
             ++found;
             EXPECT_NEAR(std::abs(contacts.distance[i]),
-                        brute_force_closest(mesh, x.row(i).transpose()).distance, 1e-12);
+                        brute_force_closest(mesh, x.row(i).transpose())->distance, 1e-12);
         }
         EXPECT_GT(found, 100);
     }

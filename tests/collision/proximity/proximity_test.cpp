@@ -6,7 +6,7 @@
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "data/core/fabric.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -6,7 +6,7 @@
 #include "collision/proximity/metrics.h"
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

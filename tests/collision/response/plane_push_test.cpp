@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/proximity/brute_force.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

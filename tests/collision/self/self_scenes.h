@@ -4,7 +4,7 @@
 
 #include "data/authoring/sheet.h"
 #include "data/core/garment_pieces.h"
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth::test {
 

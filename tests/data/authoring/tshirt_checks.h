@@ -8,7 +8,7 @@
 #include "data/authoring/mesh_quality.h"
 #include "data/core/surface_distance.h"
 
-namespace cloth {
+namespace cloth::test {
 
 /// What holds for every T-shirt, whatever its resolution.
 inline void expect_tshirt(const TriMesh& shirt, const SurfaceDistance& body, int target_vertices) {
@@ -51,4 +51,4 @@ inline Openings openings_of(const TriMesh& shirt) {
     return openings;
 }
 
-}  // namespace cloth
+}  // namespace cloth::test

@@ -23,6 +23,7 @@
 #include "tests/data/authoring/tshirt_checks.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 namespace {
 
@@ -201,8 +202,9 @@ TEST(SurfaceDistance, SignIsRightBesideSharpEdgesAndBeyondTheRadiusThereIsNothin
     const Vec3 outside[] = {{0.5, 0, -0.1}, {-0.1, 0, 0}, {0.5, 0.3, 0.5}, {0.5, 0, 1.2}};
     for (const Vec3& p : outside) EXPECT_GT(surface.nearest(p).distance, 0.0) << p.transpose();
     EXPECT_LT(surface.nearest({0.5, 0, 0.8}).distance, 0.0);
-    EXPECT_EQ(surface.nearest({0, 5, 0}, 1.0).face, -1);
-    EXPECT_TRUE(std::isinf(surface.nearest({0, 5, 0}, 1.0).distance));
+    EXPECT_FALSE(surface.nearest_within(1.0, {0, 5, 0}));
+    ASSERT_TRUE(surface.nearest_within(5.1, {0, 5, 0}));
+    EXPECT_EQ(surface.nearest_within(5.1, {0, 5, 0})->point, surface.nearest({0, 5, 0}).point);
 }
 
 TEST(ScalarGrid, BallIsClosedOutwardAndOfTheRightVolume) {

@@ -6,6 +6,7 @@
 #include "tests/data/files/file_fixture.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 namespace {
 
@@ -77,7 +78,7 @@ TEST(AnimatedBody, BendsKneesAndElbowsAsTheMotionDoes) {
         const Points motion = joint_positions(jumps().skeleton, jumps().frames[frame]);
         const auto at = [&](const char* name) {
             // This conversion of 01_01 has no bone between the twist joint and the wrist.
-            return Vec3(motion.row(jumps().skeleton.find(name)));
+            return Vec3(motion.row(jumps().skeleton.find(name).value()));
         };
         for (const auto& [names, place] : bends) {
             const double expected = angle_at(at(names[0]), at(names[1]), at(names[2]));
@@ -206,7 +207,7 @@ TEST(AnimatedBody, WearsOtherFigures) {
 
 TEST(AnimatedBody, AnUnknownSkeletonNamesTheMissingJoints) {
     Motion motion = jumps();
-    motion.skeleton.names[motion.skeleton.find("LeftLeg")] = "Bein";
+    motion.skeleton.names[motion.skeleton.find("LeftLeg").value()] = "Bein";
     expect_load_error([&] { AnimatedBody(default_body(), motion); }, "01_01.bvh",
                       "lacks the joints LeftLeg");
     motion = jumps();

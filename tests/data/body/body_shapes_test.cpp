@@ -7,6 +7,7 @@
 #include "tests/data/files/file_fixture.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 using ShapeTargetFile = FileTest;
 

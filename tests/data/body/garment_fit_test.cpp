@@ -13,6 +13,7 @@
 #include "tests/data/authoring/tshirt_checks.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include "tests/data/files/file_fixture.h"
 
 using namespace cloth;
+using namespace cloth::test;
 using Eigen::Quaterniond;
 
 namespace {
@@ -162,12 +163,12 @@ TEST(Motions, AgreeWithAssimp) {
         int compared = 0;
         for (unsigned c = 0; c < animation.mNumChannels; ++c) {
             const aiNodeAnim& channel = *animation.mChannels[c];
-            const int joint = motion.skeleton.find(channel.mNodeName.C_Str());
-            ASSERT_GE(joint, 0) << channel.mNodeName.C_Str();
+            const auto joint = motion.skeleton.find(channel.mNodeName.C_Str());
+            ASSERT_TRUE(joint) << channel.mNodeName.C_Str();
             ASSERT_EQ(static_cast<int>(channel.mNumRotationKeys), motion.frame_count());
             for (int frame : {0, 1, 500, motion.frame_count() - 1}) {
                 const aiQuaternion& q = channel.mRotationKeys[frame].mValue;
-                EXPECT_LT(distance_in_degrees(motion.frames[frame].rotations[joint],
+                EXPECT_LT(distance_in_degrees(motion.frames[frame].rotations[*joint],
                                               Quaterniond(q.w, q.x, q.y, q.z).normalized()),
                           0.1)  // assimp computes in single precision
                     << name << " " << channel.mNodeName.C_Str() << " frame " << frame;
@@ -201,7 +202,8 @@ TEST(Motions, TheCutOf0101IsTheSharedClip) {
     const Motion ours = load_motion_by_name("01_01");
     ASSERT_EQ(shared.frame_count(), ours.frame_count());
     for (const std::string name : {"Hips", "LeftLeg", "RightForeArm", "Head"}) {
-        const int a = shared.skeleton.find(name), b = ours.skeleton.find(name);
+        const int a = shared.skeleton.find(name).value();
+        const int b = ours.skeleton.find(name).value();
         for (int k : {0, 100, 223})
             EXPECT_LT(
                 distance_in_degrees(shared.frames[k].rotations[a], ours.frames[k].rotations[b]),

@@ -9,6 +9,7 @@
 #include "tests/data/files/file_fixture.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include "tests/data/files/file_fixture.h"
 
 using namespace cloth;
+using namespace cloth::test;
 
 using Paths = FileTest;
 

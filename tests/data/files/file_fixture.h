@@ -8,7 +8,7 @@
 
 #include "data/core/errors.h"
 
-namespace cloth {
+namespace cloth::test {
 
 /// A folder of its own for each test, gone afterwards.
 class FileTest : public testing::Test {
@@ -46,4 +46,4 @@ void expect_load_error(const Load& load, const std::string& file, const std::str
     EXPECT_NE(message.find("Remedy: "), std::string::npos) << message;
 }
 
-}  // namespace cloth
+}  // namespace cloth::test

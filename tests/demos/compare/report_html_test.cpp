@@ -171,7 +171,7 @@ TEST(ReportHtml, NotesFollowTheReport) {
     report["scene"]["reference_frames"] = 90;
     report["solvers"].erase(0);
     notes = section(report_html(report, {}), "What these figures do not say");
-    EXPECT_EQ(notes.find("References are dear"), std::string::npos);
+    EXPECT_EQ(notes.find("References are expensive"), std::string::npos);
     EXPECT_EQ(notes.find("Bullet"), std::string::npos);
 }
 

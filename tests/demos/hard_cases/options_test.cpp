@@ -105,7 +105,10 @@ TEST(HardCases, NamesAreKebabCaseAndUniqueAndBoundsHaveReasons) {
                   std::string::npos);
         EXPECT_FALSE(hard.sentence.empty());
         EXPECT_STRNE(hard.bounds.reason, "") << hard.name;
-        EXPECT_LT(hard.bounds.stretch_p99, 10.0) << hard.name;
+        ASSERT_TRUE(hard.bounds.stretch_p99) << hard.name;
+        EXPECT_LT(*hard.bounds.stretch_p99, 10.0) << hard.name;
+        EXPECT_GT(hard.frames, 0) << hard.name;
+        EXPECT_TRUE(hard.parts) << hard.name;
     }
 }
 

@@ -154,7 +154,7 @@ TEST(HardReport, RowsComeBackFromTheFile) {
     HardReport report(path, /*resume=*/false);
     for (const char* stepper : {"quasi-newton-3", "xpbd-5"})
         report.add(run_stepper(contest, scene, stepper, quiet).row);
-    report.add(skipped_row(hard, "reference", "too dear", 4));
+    report.add(skipped_row(hard, "reference", "too expensive", 4));
     report.add(refused_row(hard, "fast", "too small", 4));
 
     const HardReport again(path, /*resume=*/true);
@@ -183,11 +183,12 @@ TEST(HardReport, TheSchemaIsWhatReadersRelyOn) {
     EXPECT_TRUE(json.at("ms_median").is_number());
     EXPECT_EQ(json.at("penetration_max_mm"), 0.0);
     EXPECT_EQ(json.at("stretch_p99"), 1.0);
-    const nlohmann::ordered_json skipped = to_json(skipped_row(hard, "reference", "too dear", 4));
+    const nlohmann::ordered_json skipped =
+        to_json(skipped_row(hard, "reference", "too expensive", 4));
     EXPECT_TRUE(skipped.at("held").is_null());
     EXPECT_TRUE(skipped.at("stretch_p99").is_null());
     EXPECT_TRUE(skipped.at("first_failed_frame").is_null());
-    EXPECT_EQ(skipped.at("failure"), "too dear");
+    EXPECT_EQ(skipped.at("failure"), "too expensive");
 }
 
 TEST(HardReport, ABrokenFileIsNotOverwrittenSilently) {

@@ -71,7 +71,7 @@ TEST(HardScenes, AMotionIsPlayedFromTheRestPoseToItsEnd) {
     EXPECT_GT((last - first).rowwise().norm().maxCoeff(), 0.5);
     EXPECT_LT((beyond - last).rowwise().norm().maxCoeff(), 0.1);
     EXPECT_EQ(hard.name, "motion-01_01");
-    EXPECT_GT(hard.stretch_of_reference, 1.0);
+    EXPECT_EQ(hard.stretch_of_reference, 1.1);
 }
 
 TEST(HardScenes, MotionsLetLimbsPass) {
@@ -93,7 +93,7 @@ TEST(HardScenes, MotionsLetLimbsPass) {
 }
 
 /// An arm that goes into the chest takes no cloth along, whatever the number of threads.
-TEST(HardScenes, ClothLetsABuriedArmPass) {
+TEST(HardScenes, ClothLetsACoveredArmPass) {
     const HardCase hard = motion_case("Boxing_Toes", "tshirt_1000");
     const HardScene scene(hard.parts(), 32);
     const HardCase held = [&] {

@@ -51,7 +51,7 @@ TEST(SpeedErrorOptions, WhatCannotBeIsNamedWithItsChoices) {
     expect_words(message({"--threads", "257"}), {"--threads", "257", "256"});
     expect_words(message({"--solvers", ","}), {"--solvers"});
     expect_words(message({"--frame", "3"}), {"--frame"});
-    expect_words(message({"--out"}), {"--out", "needs a value"});
+    expect_words(message({"--out"}), {"--out", "required"});
 }
 
 TEST(SpeedErrorOptions, HelpNamesEveryOption) {

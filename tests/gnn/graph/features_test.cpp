@@ -82,6 +82,40 @@ TEST(Features, HaveTheShapesOfTheirLayoutsAndAreFinite) {
     EXPECT_TRUE(f.node.allFinite() && f.edge.allFinite() && f.world.allFinite());
 }
 
+TEST(Features, NamesAndTablesOfColumnsAgree) {
+    const auto column_called = [](const FeatureLayout& layout, const std::string& name) {
+        int first = 0;
+        for (const FeatureGroup& group : layout) {
+            if (group.name == name) return first;
+            first += group.size;
+        }
+        return -1;
+    };
+    EXPECT_EQ(first_column<NodeFeature::velocity>, 0);
+    EXPECT_EQ(first_column<NodeFeature::near_obstacle>, 17);
+    EXPECT_EQ(first_column<NodeFeature::near_obstacle>,
+              column_called(node_layout(false), "near_obstacle"));
+    EXPECT_EQ(first_column<NodeFeature::elastic_now>, feature_count(node_layout(false)));
+    EXPECT_EQ(first_column<NodeFeature::jacobi_base>,
+              column_called(node_layout(true), "jacobi_base"));
+    EXPECT_EQ(first_column<EdgeFeature::relative_base>,
+              column_called(edge_layout(), "relative_base"));
+    EXPECT_EQ(first_column<WorldFeature::body_normal>,
+              column_called(world_layout(), "body_normal"));
+    EXPECT_EQ(first_column<WorldFeature::nearness>, column_called(world_layout(), "nearness"));
+    EXPECT_EQ(first_column<BodyFeature::friction>, column_called(body_layout(), "friction"));
+}
+
+TEST(Features, PinnedAndMassColumnsHoldWhatTheyAreCalled) {
+    const Scene scene(mesh(), {0, 5});
+    const Features f = scene.features();
+    for (Eigen::Index i = 0; i < f.node.rows(); ++i) {
+        EXPECT_EQ(f.node(i, first_column<NodeFeature::pinned>), i == 0 || i == 5 ? 1.0f : 0.0f);
+        EXPECT_FLOAT_EQ(f.node(i, first_column<NodeFeature::log_mass>),
+                        static_cast<float>(std::log(scene.garment.masses()[i])));
+    }
+}
+
 TEST(Features, DoNotDependOnWhereTheSceneIs) {
     Scene scene(mesh(), {0, 5});
     const Features here = scene.features();
@@ -133,7 +167,8 @@ TEST(Features, ForcesOfUndeformedClothVanishWithoutGravity) {
     scene.boundary = Boundary();
     scene.boundary.gravity.setZero();
     const Features f = scene.features();
-    EXPECT_LT(f.node.rightCols(12).cwiseAbs().maxCoeff(), 1e-4f);
+    const Eigen::Index forces = f.node.cols() - first_column<NodeFeature::elastic_now>;
+    EXPECT_LT(f.node.rightCols(forces).cwiseAbs().maxCoeff(), 1e-4f);
     EXPECT_FALSE(f.any_world);
 }
 

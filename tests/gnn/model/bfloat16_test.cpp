@@ -15,6 +15,8 @@
 namespace cloth {
 namespace {
 
+using namespace test;
+
 double rounded(double value) {
     return static_cast<double>(to_float(to_bfloat16(static_cast<float>(value))));
 }

@@ -29,6 +29,8 @@ extern "C" void* aligned_alloc(size_t alignment, size_t bytes) {
 namespace cloth {
 namespace {
 
+using namespace test;
+
 /// A sheet without surroundings; its features are zeros but for a few numbers.
 struct Input {
     explicit Input(const ModelConfig& config, int vertices = 900)

@@ -13,6 +13,8 @@
 namespace cloth {
 namespace {
 
+using namespace test;
+
 const std::vector<Shape> shapes = {
     {16, {16}, 2, false, 100},        {32, {32}, 2, true, 131},
     {32, {32, 32, 32}, 0, false, 97}, {48, {48, 48}, 0, true, 5},

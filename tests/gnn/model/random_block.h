@@ -10,7 +10,7 @@
 
 #include "gnn/model/message_block.h"
 
-namespace cloth {
+namespace cloth::test {
 
 using Numbers = AlignedBuffer;
 
@@ -152,4 +152,4 @@ inline auto all_instructions() {
                              Instructions::avx512_bf16);
 }
 
-}  // namespace cloth
+}  // namespace cloth::test

@@ -5,7 +5,7 @@
 
 #include "gnn/model/weights.h"
 
-namespace cloth {
+namespace cloth::test {
 
 /// Seeded numbers in place of a training.
 inline Weights random_weights(const ModelConfig& config) {
@@ -26,4 +26,4 @@ inline Weights random_weights(const ModelConfig& config) {
     return weights;
 }
 
-}  // namespace cloth
+}  // namespace cloth::test

@@ -1,8 +1,8 @@
-#include "collision/geometry/primitives.h"
+#include "data/core/primitives.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {

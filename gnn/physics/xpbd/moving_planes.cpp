@@ -1,4 +1,4 @@
-#include "gnn/physics/xpbd/riding_planes.h"
+#include "gnn/physics/xpbd/moving_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-void RidingPlanes::begin_step(const Garment& garment, const Points& x, const Boundary& boundary,
+void MovingPlanes::begin_step(const Garment& garment, const Points& x, const Boundary& boundary,
                               const SurfaceContacts& contacts, double distance, int substeps) {
     m_planes.clear();
     m_too_close.clear();
@@ -22,7 +22,7 @@ void RidingPlanes::begin_step(const Garment& garment, const Points& x, const Bou
     }
 }
 
-void RidingPlanes::add_plane(Eigen::Index i, const Points& x, const SurfaceContacts& contacts,
+void MovingPlanes::add_plane(Eigen::Index i, const Points& x, const SurfaceContacts& contacts,
                              double friction) {
     Plane plane;
     plane.vertex = i;
@@ -37,11 +37,11 @@ void RidingPlanes::add_plane(Eigen::Index i, const Points& x, const SurfaceConta
     m_planes.push_back(plane);
 }
 
-void RidingPlanes::begin_substep(int substep) {
+void MovingPlanes::begin_substep(int substep) {
     m_progress = substep * m_length;
 }
 
-void RidingPlanes::recover(PaddedPoints& x) const {
+void MovingPlanes::recover(PaddedPoints& x) const {
     const double before = m_progress - m_length;
     for (const size_t k : m_too_close) {
         const Plane& plane = m_planes[k];
@@ -55,7 +55,7 @@ void RidingPlanes::recover(PaddedPoints& x) const {
     }
 }
 
-void RidingPlanes::project(const PaddedPoints& before, PaddedPoints& x) const {
+void MovingPlanes::project(const PaddedPoints& before, PaddedPoints& x) const {
     for (const Plane& plane : m_planes) {
         const Vec3 at = x.row(plane.vertex).head<3>();
         const Vec3 direction = plane.normal + m_progress * plane.normal_move;

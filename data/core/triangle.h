@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "data/core/types.h"
 
@@ -53,6 +54,35 @@ inline TriangleHit closest_on_triangle(const Vec3& q, const Vec3& a, const Vec3&
     const double scale = 1.0 / (va + vb + vc);
     const double v = vb * scale, w = vc * scale;
     return {{1 - v - w, v, w}, (aq - v * ab - w * ac).squaredNorm()};
+}
+
+/// Where a line meets the plane of a triangle abc.
+struct LineHit {
+    double at = 0.0;  ///< from + at * way
+    double u = 0.0,
+           v = 0.0;  ///< a + u (b - a) + v (c - a): in the triangle if u, v, 1 - u - v >= 0
+
+    bool is_inside(double slack = 0.0) const {
+        return u >= -slack && v >= -slack && u + v <= 1.0 + slack;
+    }
+};
+
+/// Where the line `from` + at * `way` meets the plane of the triangle abc; nothing if it is
+/// parallel to it or the triangle has no area. Moeller and Trumbore 1997.
+inline std::optional<LineHit> meet_line(const Vec3& from, const Vec3& way, const Vec3& a,
+                                        const Vec3& b, const Vec3& c) {
+    const Vec3 ab = b - a, ac = c - a;
+    const Vec3 across = way.cross(ac);
+    const double volume = ab.dot(across);
+    if (volume == 0.0) return std::nullopt;
+    const Vec3 offset = from - a;
+    const Vec3 turned = offset.cross(ab);
+    return LineHit{ac.dot(turned) / volume, offset.dot(across) / volume, way.dot(turned) / volume};
+}
+
+/// Angle (rad) between two vectors, 0 to pi.
+inline double angle_between(const Vec3& u, const Vec3& v) {
+    return std::atan2(u.cross(v).norm(), u.dot(v));
 }
 
 /// Area vector times two of the triangle abc, or nothing usable: false if the triangle's height is

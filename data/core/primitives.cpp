@@ -1,4 +1,4 @@
-#include "collision/geometry/primitives.h"
+#include "data/core/primitives.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "collision/geometry/triangle.h"
+#include "data/core/triangle.h"
 
 #include <gtest/gtest.h>
 
-#include "tests/collision/test_meshes.h"
+#include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
@@ -58,6 +58,39 @@ TEST(Triangle, WithoutAreaOrFiniteCornersHasNoNormal) {
     EXPECT_FALSE(has_area({nan, 0, 0}, {1, 0, 0}, {0, 1, 0}));
     EXPECT_FALSE(has_area({inf, 0, 0}, {1, 0, 0}, {0, 1, 0}));
     EXPECT_TRUE(has_area({0, 0, 0}, {1e-6, 0, 0}, {0, 1e-6, 0}));
+}
+
+TEST(Triangle, ALineMeetsItsPlaneWhereTheyAreEqual) {
+    std::mt19937 random(2);
+    int inside = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        const Vec3 a = random_point(random, 1), b = random_point(random, 1);
+        const Vec3 c = random_point(random, 1), from = random_point(random, 1);
+        const Vec3 way = random_point(random, 1);
+        const auto hit = meet_line(from, way, a, b, c);
+        ASSERT_TRUE(hit);
+        const Vec3 in_plane = a + hit->u * (b - a) + hit->v * (c - a);
+        const double size = 1.0 + std::abs(hit->at) + std::abs(hit->u) + std::abs(hit->v);
+        EXPECT_LT((from + hit->at * way - in_plane).norm(), 1e-9 * size);
+        const double apart = closest_on_triangle(in_plane, a, b, c).squared;
+        if (hit->is_inside()) {
+            EXPECT_LT(apart, 1e-20);
+        } else if (!hit->is_inside(1e-6)) {
+            EXPECT_GT(apart, 0.0);
+        }
+        inside += hit->is_inside();
+    }
+    EXPECT_GT(inside, 20);
+}
+
+TEST(Triangle, AParallelLineDoesNotMeetIt) {
+    const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+    EXPECT_FALSE(meet_line({0.2, 0.2, 1}, {1, 1, 0}, a, b, c));
+    EXPECT_FALSE(meet_line({0.2, 0.2, 1}, {0, 0, -1}, a, b, b)) << "no area";
+    const auto edge = meet_line({0.5, -1e-12, 1}, {0, 0, -1}, a, b, c);
+    ASSERT_TRUE(edge);
+    EXPECT_FALSE(edge->is_inside());
+    EXPECT_TRUE(edge->is_inside(1e-9));
 }
 
 }  // namespace

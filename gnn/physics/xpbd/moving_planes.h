@@ -10,7 +10,7 @@
 namespace cloth {
 
 /// The obstacles as a step in substeps sees them: one plane per vertex, through the surface point
-/// that was nearest at t, which rides with that point to t + dt.
+/// that was nearest at t, which moves with that point to t + dt.
 ///
 /// The plane's normal is the direction from the surface point to the vertex at t (at corners and
 /// edges of the obstacle that is not the face's normal), turned as the face turns.
@@ -18,7 +18,7 @@ namespace cloth {
 /// A vertex that is closer than the contact distance at t is let out over the whole step, by
 /// recover(), which moves it without giving it a velocity; project() then holds it at the distance
 /// it has reached.
-class RidingPlanes {
+class MovingPlanes {
  public:
     /// @param distance  at which vertices are held from the surface (m)
     void begin_step(const Garment& garment, const Points& x, const Boundary& boundary,

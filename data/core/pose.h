@@ -1,0 +1,17 @@
+#pragma once
+
+#include "data/core/types.h"
+
+namespace cloth {
+
+using Pose = Eigen::Isometry3d;
+
+/// The pose at `s` on the way from a (s = 0) to b (s = 1): straight, and turned evenly the shorter
+/// way about one axis (slerp). Beyond [0, 1] the motion goes on. The ends are a and b bit for bit,
+/// and so is every pose between two that are equal.
+Pose interpolate(const Pose& a, const Pose& b, double s);
+
+/// Points (N x 3, m) given in the frame `pose`, in the frame that `pose` is given in.
+Points transformed(const Points& points, const Pose& pose);
+
+}  // namespace cloth

@@ -1,0 +1,57 @@
+#include "demos/compare/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "demos/compare/arguments.h"
+
+namespace cloth {
+
+void set_up(CLI::App& app) {
+    app.option_defaults()->take_last();
+    app.get_formatter()->column_width(26);
+}
+
+CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
+                              int highest, const std::string& description) {
+    return app.add_option(name, value, description)
+        ->check(CLI::Range(lowest, highest).description(""))
+        ->type_name("N");
+}
+
+CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& items,
+                      const std::string& description) {
+    const auto read = [name, &items](const std::string& text) {
+        items = split_list(text);
+        if (items.empty()) throw CLI::ValidationError(name, "name at least one");
+    };
+    return app.add_option_function<std::string>(name, read, description)->type_name("A,B,...");
+}
+
+void parse(CLI::App& app, const std::vector<std::string>& arguments) {
+    try {
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::CallForHelp&) {
+        throw HelpText(app.help());
+    } catch (const CLI::ExtrasError&) {
+        throw UsageError("unknown option " + app.remaining().front() + "; see --help");
+    } catch (const CLI::ParseError& error) {
+        throw UsageError(std::string(error.what()) + "; see --help");
+    }
+}
+
+int run_program(int argc, char** argv,
+                const std::function<void(const std::vector<std::string>& arguments)>& program) {
+    try {
+        program(std::vector<std::string>(argv + 1, argv + argc));
+        return 0;
+    } catch (const HelpText& help) {
+        std::printf("%s", help.what());
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
+}
+
+}  // namespace cloth

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+/// What the programs of this folder add to CLI11, whose header is heavy: their parsers alone
+/// include it.
+namespace cloth {
+
+/// To be called before options are added. Of an option that is given twice the last one counts, so
+/// that scripts can hand on what their user adds.
+void set_up(CLI::App& app);
+
+/// An option whose value is a whole number. @param value  kept if the option is not given
+CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
+                              int highest, const std::string& description);
+
+/// An option whose value is a list with commas, which must not be empty.
+/// @param items  kept if the option is not given
+CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& items,
+                      const std::string& description);
+
+/// @throws UsageError if the command line is wrong, HelpText if it asks for help
+void parse(CLI::App& app, const std::vector<std::string>& arguments);
+
+/// What main() of a program does: runs it, and prints errors or the help that was asked for.
+/// @return  its exit status
+int run_program(int argc, char** argv,
+                const std::function<void(const std::vector<std::string>& arguments)>& program);
+
+}  // namespace cloth
