@@ -12,6 +12,7 @@
 
 #include "collision/self/self_crossings.h"
 #include "collision/self/self_tangles.h"
+#include "demos/provenance/provenance.h"
 #include "gnn/physics/stepper/quasi_newton_stepper.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
@@ -106,4 +107,11 @@ CLOTH_LAYER_BENCHMARK(tangles);
 }  // namespace
 }  // namespace cloth
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::AddCustomContext("commit", cloth::build_commit());
+    benchmark::AddCustomContext("machine", cloth::machine_name());
+    benchmark::AddCustomContext("threads", "1");
+    benchmark::RunSpecifiedBenchmarks();
+}
