@@ -7,7 +7,6 @@
 
 #include "data/core/errors.h"
 #include "demos/doc_tables/markdown_page.h"
-#include "demos/doc_tables/measure.h"
 
 using namespace cloth;
 
