@@ -92,13 +92,6 @@ std::string with_tables(const std::string& page, const std::string& text, const 
     return made;
 }
 
-std::vector<std::string> tables_in(const std::string& page, const std::string& text) {
-    std::vector<std::string> names;
-    for (const MarkedTable& marked : marked_tables(page, lines_of(text)))
-        names.push_back(marked.name);
-    return names;
-}
-
 std::string first_difference(const std::string& page, const std::string& text,
                              const std::string& wanted) {
     const std::vector<std::string> lines = lines_of(text), others = lines_of(wanted);

@@ -21,9 +21,6 @@ using TableText = std::function<std::optional<std::string>(const std::string& na
 /// @throws LoadError naming page, line and remedy for a table that is unknown or not closed
 std::string with_tables(const std::string& page, const std::string& text, const TableText& table);
 
-/// Names of the tables that a page has, in their order. @throws LoadError as with_tables()
-std::vector<std::string> tables_in(const std::string& page, const std::string& text);
-
 /// What is wrong with a page whose text should be `wanted`: place and both lines; empty if nothing.
 std::string first_difference(const std::string& page, const std::string& text,
                              const std::string& wanted);

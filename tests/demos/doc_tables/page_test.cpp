@@ -42,7 +42,6 @@ TEST(Page, TablesAreMadeAnewAndNothingElse) {
     EXPECT_EQ(with_tables("shop.md", bare, shoes),
               "<!-- table: shoes -->\n\n| shoes |\n|---|\n| 2 |\n\n<!-- end of table -->\n");
     EXPECT_EQ(with_tables("shop.md", "no table\n", shoes), "no table\n");
-    EXPECT_EQ(tables_in("shop.md", old_page + bare), (std::vector<std::string>{"shoes", "shoes"}));
 }
 
 TEST(Page, MarkersInCodeAreText) {
