@@ -53,8 +53,8 @@ const Moment& moment(bool meets, int vertices) {
     static std::map<std::pair<bool, int>, std::unique_ptr<Moment>> made;
     std::unique_ptr<Moment>& it = made[{meets, vertices}];
     if (!it)
-        it = std::make_unique<Moment>(meets ? test::folded_sheet(vertices)
-                                            : draped_sheet(vertices));
+        it =
+            std::make_unique<Moment>(meets ? test::folded_sheet(vertices) : draped_sheet(vertices));
     return *it;
 }
 
