@@ -11,7 +11,7 @@ if(GIT)
                   OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
   if(NOT failed)
     set(commit "${head}")
-    execute_process(COMMAND ${GIT} status --porcelain --untracked-files=no -- .
+    execute_process(COMMAND ${GIT} --no-optional-locks status --porcelain --untracked-files=no -- .
                             ":(exclude)*.md" ":(exclude)data/assets/figures"
                     WORKING_DIRECTORY "${SOURCE}" OUTPUT_VARIABLE changes ERROR_QUIET)
     if(changes)
