@@ -1,10 +1,12 @@
 #include "demos/bullet_scenes/report.h"
 
+#include <omp.h>
+
 #include <cmath>
 #include <cstdio>
 
 #include "demos/compare/json_numbers.h"
-#include "demos/compare/machine.h"
+#include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
 
 namespace cloth {
@@ -54,7 +56,7 @@ std::string scene_row_text(const SceneRow& row) {
 
 void write_scene_report(const std::string& path, const std::vector<SceneRow>& rows) {
     nlohmann::ordered_json document;
-    document["machine"] = machine_name();
+    document["provenance"] = provenance_json(omp_get_max_threads());
     document["rows"] = nlohmann::ordered_json::array();
     for (const SceneRow& row : rows) document["rows"].push_back(scene_row_json(row));
     write_text_file(path, document.dump(2) + "\n");

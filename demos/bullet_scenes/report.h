@@ -14,7 +14,7 @@ nlohmann::ordered_json scene_row_json(const SceneRow& row);
 std::string scene_row_text(const SceneRow& row);
 std::string scene_row_heading();
 
-/// Writes {"machine", "rows"}. @throws LoadError naming the file
+/// Writes {"provenance", "rows"}. @throws LoadError naming the file
 void write_scene_report(const std::string& path, const std::vector<SceneRow>& rows);
 
 }  // namespace cloth

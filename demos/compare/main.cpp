@@ -15,12 +15,12 @@
 #include "demos/compare/body_scene.h"
 #include "demos/compare/command_line.h"
 #include "demos/compare/film.h"
-#include "demos/compare/machine.h"
 #include "demos/compare/measure.h"
 #include "demos/compare/options.h"
 #include "demos/compare/progress.h"
 #include "demos/compare/report_html.h"
 #include "demos/compare/solver_factory.h"
+#include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
 
 extern char** environ;
@@ -42,15 +42,13 @@ json read_json(const std::string& path) {
     return document;
 }
 
-/// Removes results that were computed with other settings.
+/// Removes results that were computed with other settings or by another program.
 void prepare_work_folder(const CompareOptions& options) {
-    const json settings = {{"garment", options.garment},
-                           {"motion", options.motion},
-                           {"fabric", options.fabric},
-                           {"frames", options.frames},
-                           {"reference_frames", options.reference_frames},
-                           {"threads", options.threads},
-                           {"weights", options.weights}};
+    const json settings = {
+        {"commit", build_commit()},   {"garment", options.garment},
+        {"motion", options.motion},   {"fabric", options.fabric},
+        {"frames", options.frames},   {"reference_frames", options.reference_frames},
+        {"threads", options.threads}, {"weights", options.weights}};
     const std::string path = work_file(options, "settings.json");
     std::error_code ignored;
     if (!std::filesystem::exists(path) || read_json(path) != settings)
@@ -122,9 +120,7 @@ json scene_json(const CompareOptions& options, const BodyScene& scene) {
             {"frames", scene.frames()},
             {"reference_frames", scene.reference_frames()},
             {"time_step", ComparisonScene::frame_time},
-            {"fabric", options.fabric == "real" ? "cotton, 5 kN/m" : "soft cotton, 33 N/m"},
-            {"machine", machine_name()},
-            {"threads", options.threads == 0 ? omp_get_max_threads() : options.threads}};
+            {"fabric", options.fabric == "real" ? "cotton, 5 kN/m" : "soft cotton, 33 N/m"}};
 }
 
 void compare(const CompareOptions& options) {
@@ -133,7 +129,10 @@ void compare(const CompareOptions& options) {
     for (const std::string& solver : options.solvers) run_stage(options, solver);
 
     const BodyScene scene(scene_settings(options));
-    json report = {{"scene", scene_json(options, scene)}, {"solvers", json::array()}};
+    const int threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    json report = {{"provenance", provenance_json(threads)},
+                   {"scene", scene_json(options, scene)},
+                   {"solvers", json::array()}};
     std::vector<Trajectory> trajectories;
     for (const std::string& solver : options.solvers) {
         report["solvers"].push_back(read_json(work_file(options, solver + ".json")));

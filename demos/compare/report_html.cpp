@@ -144,14 +144,18 @@ std::string bytes_of(const std::string& path) {
     return bytes;
 }
 
-/// A value of the scene as text; a dash where it is missing.
-std::string scene_text(const json& report, const std::string& field) {
-    const json& scene = report.at("scene");
-    if (!scene.contains(field) || scene.at(field).is_null()) return "&ndash;";
-    const json& value = scene.at(field);
+/// A value of the report as text; a dash where it is missing.
+std::string text_at(const json& report, const std::string& path) {
+    const json::json_pointer pointer(path);
+    if (!report.contains(pointer) || report.at(pointer).is_null()) return "&ndash;";
+    const json& value = report.at(pointer);
     if (value.is_string()) return escaped(value.get<std::string>());
     if (value.is_number()) return fixed_text(value.get<double>(), 3);
     return escaped(value.dump());
+}
+
+std::string scene_text(const json& report, const std::string& field) {
+    return text_at(report, "/scene/" + field);
 }
 
 std::string heading_html(const json& report) {
@@ -160,8 +164,9 @@ std::string heading_html(const json& report) {
            "</h1>\n<p class=\"scene\">" + scene_text(report, "vertices") + " vertices, " +
            scene_text(report, "faces") + " faces; " + scene_text(report, "frames") +
            " frames of 1/" + (dt > 0.0 ? fixed_text(1.0 / dt, 1) : "&ndash;") +
-           " s; fabric: " + scene_text(report, "fabric") + "; " + scene_text(report, "machine") +
-           ", " + scene_text(report, "threads") + " threads</p>\n";
+           " s; fabric: " + scene_text(report, "fabric") + "; " +
+           text_at(report, "/provenance/machine") + ", " + text_at(report, "/provenance/threads") +
+           " threads; commit " + text_at(report, "/provenance/commit") + "</p>\n";
 }
 
 /// The solver with the lowest value of those that compete; null if none has one.

@@ -1,5 +1,7 @@
 // hard_cases: scenes on which cloth solvers fail, with every solver. See --help.
 
+#include <omp.h>
+
 #include <cstdio>
 #include <filesystem>
 
@@ -58,7 +60,8 @@ void run(const HardCaseOptions& options) {
     const SolverSettings solver{options.weights, options.threads, nullptr};
     check_steppers(options.steppers, solver);
     std::filesystem::create_directories(options.out);
-    HardReport report(options.out + "/hard_cases.json", options.resume);
+    const int threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
+    HardReport report(options.out + "/hard_cases.json", threads, options.resume);
     Progress line;
     const auto run_one = [&](const HardCase& hard) {
         const int frames =

@@ -6,7 +6,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
-#include "demos/compare/machine.h"
+#include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
 
 namespace cloth {
@@ -18,6 +18,11 @@ static std::vector<HardRow> load_rows(const std::string& path) {
     if (!std::filesystem::exists(path)) return rows;
     try {
         const ordered_json document = ordered_json::parse(read_file(path));
+        const std::string commit = document.at("provenance").at("commit").get<std::string>();
+        if (commit != build_commit())
+            throw LoadError(path, "provenance",
+                            "is of commit " + commit + ", not " + build_commit(),
+                            "delete it, or run without --resume");
         for (const ordered_json& row : document.at("rows")) rows.push_back(row_from_json(row));
     } catch (const ordered_json::exception& error) {
         throw LoadError(path, "", error.what(), "delete it, or run without --resume");
@@ -25,7 +30,8 @@ static std::vector<HardRow> load_rows(const std::string& path) {
     return rows;
 }
 
-HardReport::HardReport(std::string path, bool resume) : m_path(std::move(path)) {
+HardReport::HardReport(std::string path, int threads, bool resume)
+    : m_path(std::move(path)), m_provenance(provenance_json(threads)) {
     if (resume) m_rows = load_rows(m_path);
 }
 
@@ -47,7 +53,7 @@ void HardReport::add(const HardRow& row) {
     else
         *at = row;
     ordered_json document;
-    document["machine"] = machine_name();
+    document["provenance"] = m_provenance;
     document["rows"] = ordered_json::array();
     for (const HardRow& one : m_rows) document["rows"].push_back(to_json(one));
     write_text_file(m_path, document.dump(1) + "\n");

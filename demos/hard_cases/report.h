@@ -10,9 +10,10 @@ namespace cloth {
 /// The rows of hard_cases.json, whole on disk after every change.
 class HardReport {
  public:
-    /// @param resume  begin with the rows that the file has
-    /// @throws LoadError if there is a file that is no report
-    HardReport(std::string path, bool resume);
+    /// @param threads  that the solvers use, for the report
+    /// @param resume   begin with the rows that the file has
+    /// @throws LoadError if there is a file that is no report or that another program has written
+    HardReport(std::string path, int threads, bool resume);
 
     /// A row of the same case, stepper and number of frames; null: there is none.
     const HardRow* find(const std::string& hard_case, const std::string& stepper,
@@ -24,6 +25,7 @@ class HardReport {
 
  private:
     std::string m_path;
+    nlohmann::ordered_json m_provenance;
     std::vector<HardRow> m_rows;
 };
 

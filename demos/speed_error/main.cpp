@@ -8,8 +8,8 @@
 
 #include "demos/compare/arguments.h"
 #include "demos/compare/command_line.h"
-#include "demos/compare/machine.h"
 #include "demos/compare/progress.h"
+#include "demos/provenance/provenance.h"
 #include "demos/speed_error/options.h"
 #include "demos/speed_error/pinning.h"
 #include "demos/speed_error/plots.h"
@@ -28,9 +28,8 @@ double load_average() {
     return getloadavg(&load, 1) == 1 ? load : 0.0;
 }
 
-ordered_json machine_json(const std::vector<int>& cores, bool torch,
-                          const std::string& relative_to) {
-    return {{"machine", machine_name()},
+ordered_json head_json(const std::vector<int>& cores, bool torch, const std::string& relative_to) {
+    return {{"provenance", provenance_json(static_cast<int>(cores.size()))},
             {"cores", cores},
             {"libtorch", torch},
             {"relative_to", relative_to.empty() ? ordered_json() : ordered_json(relative_to)},
@@ -73,9 +72,9 @@ void speed_error(const SpeedErrorOptions& options) {
     if (contest.solvers.empty())
         contest.solvers = default_solvers(networks_in(options.weights), torch);
     contest.relative_to = compared_with(options.relative_to, contest.solvers);
-    contest.work = options.out + "/work";
+    contest.work = options.out + "/work/" + build_commit();
 
-    ordered_json head = machine_json(cores, torch, contest.relative_to);
+    ordered_json head = head_json(cores, torch, contest.relative_to);
     std::vector<SolverRow> rows;
     Progress line;
     for (const std::string& scene : options.scenes)

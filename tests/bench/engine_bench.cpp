@@ -20,6 +20,7 @@
 #include <random>
 
 #include "data/core/paths.h"
+#include "demos/provenance/provenance.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/make_cloth.h"
 #include "gnn/model/message_block.h"
@@ -227,6 +228,9 @@ int main(int argc, char** argv) {
     for (const int d : {32, 64, 128})
         std::printf("Eigen's product 4096x%dx%d: %.0f GFLOP/s on one core\n", d, d,
                     1e-9 * plain_product(4096, d, d));
+    benchmark::AddCustomContext("commit", cloth::build_commit());
+    benchmark::AddCustomContext("machine", cloth::machine_name());
+    benchmark::AddCustomContext("threads", "1 and 2");
     register_networks();
     benchmark::RunSpecifiedBenchmarks();
 }

@@ -12,6 +12,7 @@
 
 #include "collision/self/self_crossings.h"
 #include "collision/self/self_tangles.h"
+#include "demos/provenance/provenance.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
@@ -53,8 +54,8 @@ const Moment& moment(bool meets, int vertices) {
     static std::map<std::pair<bool, int>, std::unique_ptr<Moment>> made;
     std::unique_ptr<Moment>& it = made[{meets, vertices}];
     if (!it)
-        it = std::make_unique<Moment>(meets ? test::folded_sheet(vertices)
-                                            : draped_sheet(vertices));
+        it =
+            std::make_unique<Moment>(meets ? test::folded_sheet(vertices) : draped_sheet(vertices));
     return *it;
 }
 
@@ -106,4 +107,11 @@ CLOTH_LAYER_BENCHMARK(tangles);
 }  // namespace
 }  // namespace cloth
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+    benchmark::AddCustomContext("commit", cloth::build_commit());
+    benchmark::AddCustomContext("machine", cloth::machine_name());
+    benchmark::AddCustomContext("threads", "1");
+    benchmark::RunSpecifiedBenchmarks();
+}

@@ -69,9 +69,9 @@ json sample_report() {
           {"frames", 90},
           {"reference_frames", 30},
           {"time_step", 1.0 / 30.0},
-          {"fabric", "soft cotton, 33 N/m"},
-          {"machine", "Two-core <processor>"},
-          {"threads", 2}}},
+          {"fabric", "soft cotton, 33 N/m"}}},
+        {"provenance",
+         {{"commit", "0123456789"}, {"machine", "Two-core <processor>"}, {"threads", 2}}},
         {"solvers",
          {solver_entry("bullet", 21.0, 77.0), solver_entry("reference", 3100.0, 0.0),
           solver_entry("quasi-newton-3", 33.0, 14.2), solver_entry("fast", 46.0, 8.4), failed}}};

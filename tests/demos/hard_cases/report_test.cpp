@@ -151,13 +151,13 @@ TEST(HardReport, RowsComeBackFromTheFile) {
     const HardCase hard = falling({});
     const HardScene scene(hard.parts(), 4);
     HardContest contest{&hard, 4, {}, {}};
-    HardReport report(path, /*resume=*/false);
+    HardReport report(path, /*threads=*/1, /*resume=*/false);
     for (const char* stepper : {"quasi-newton-3", "xpbd-5"})
         report.add(run_stepper(contest, scene, stepper, quiet).row);
     report.add(skipped_row(hard, "reference", "too expensive", 4));
     report.add(refused_row(hard, "fast", "too small", 4));
 
-    const HardReport again(path, /*resume=*/true);
+    const HardReport again(path, /*threads=*/1, /*resume=*/true);
     ASSERT_EQ(again.rows().size(), 4u);
     for (size_t k = 0; k < 4; ++k) EXPECT_EQ(to_json(again.rows()[k]), to_json(report.rows()[k]));
     EXPECT_NE(again.find("falling", "xpbd-5", 4), nullptr);
@@ -194,5 +194,16 @@ TEST(HardReport, TheSchemaIsWhatReadersRelyOn) {
 TEST(HardReport, ABrokenFileIsNotOverwrittenSilently) {
     const std::string path = ::testing::TempDir() + "broken_hard_cases.json";
     std::ofstream(path) << "{\"rows\": [{}]}";
-    EXPECT_THROW(HardReport(path, /*resume=*/true), LoadError);
+    EXPECT_THROW(HardReport(path, /*threads=*/1, /*resume=*/true), LoadError);
+}
+
+TEST(HardReport, RowsOfAnotherProgramAreNotMixedIn) {
+    const std::string path = ::testing::TempDir() + "foreign_hard_cases.json";
+    std::ofstream(path) << R"({"provenance": {"commit": "another"}, "rows": []})";
+    try {
+        HardReport(path, /*threads=*/1, /*resume=*/true);
+        FAIL() << "rows of two programs in one report";
+    } catch (const LoadError& error) {
+        EXPECT_NE(std::string(error.what()).find("commit another"), std::string::npos);
+    }
 }

@@ -1,0 +1,112 @@
+#include "demos/doc_tables/data_sets.h"
+
+namespace cloth {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::string figures = "data/assets/figures/";
+
+/// Medians and counters of a report of Google Benchmark; the machine's name on its network and the
+/// repetitions are left out.
+Json tidy_benchmark(const Json& report) {
+    const Json& context = report.at("context");
+    Json tidy;
+    tidy["provenance"] = {{"commit", context.at("commit")},
+                          {"machine", context.at("machine")},
+                          {"threads", context.at("threads")},
+                          {"date", context.at("date").get<std::string>().substr(0, 10)}};
+    tidy["benchmarks"] = Json::array();
+    for (const Json& row : report.at("benchmarks")) {
+        if (row.value("aggregate_name", "") != "median") continue;
+        Json kept = row;
+        kept["name"] = row.at("run_name");
+        for (const char* member :
+             {"family_index", "per_family_instance_index", "run_name", "run_type", "repetitions",
+              "repetition_index", "threads", "aggregate_name", "aggregate_unit", "iterations"})
+            kept.erase(member);
+        tidy["benchmarks"].push_back(kept);
+    }
+    return tidy;
+}
+
+std::string benchmark_command(const std::string& program) {
+    return "build/release/tests/bench/" + program +
+           " --benchmark_min_time=0.1 --benchmark_repetitions=3"
+           " --benchmark_enable_random_interleaving=true"
+           " --benchmark_out_format=json --benchmark_out=OUT/report.json";
+}
+
+DataSet motions(const std::string& name, const std::string& options) {
+    return {name,
+            figures + name + ".json",
+            "build/release/demos/hard_cases"
+            " --motions ../shared/data/motions/validation,../shared/data/motions/train"
+            " --steppers reference,quasi-newton,small" +
+                options + " --no-pictures --out OUT",
+            "hard_cases.json",
+            {},
+            {}};
+}
+
+}  // namespace
+
+std::vector<DataSet> data_sets() {
+    return {
+        {"whole_motion",
+         figures + "whole_motion.json",
+         "build/release/demos/compare --garment tshirt --motion 01_01 --frames 0"
+         " --reference-frames 0 --no-video --out OUT --solvers "
+         "bullet,bullet-fine,reference,quasi-newton-1,quasi-newton-3,quasi-newton-10,"
+         "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+10-bdf2,fast,small+0,fast+0",
+         "report.json",
+         {},
+         {}},
+        {"speed_error",
+         figures + "speed_error.json",
+         "build/release/demos/speed_error --scene all --frames 30 --out OUT",
+         "speed_error.json",
+         {},
+         {{"tshirt_soft_fine_rmse.svg", figures + "speed_error_tshirt_soft_fine_rmse.svg"},
+          {"tshirt_soft_gap.svg", figures + "speed_error_tshirt_soft_gap.svg"}}},
+        {"hard_cases",
+         figures + "hard_cases.json",
+         "build/release/demos/hard_cases"
+         " --steppers quasi-newton,quasi-newton-bdf2,small,fast,fast+0 --no-pictures --out OUT",
+         "hard_cases.json",
+         {},
+         {}},
+        motions("motions", ""),
+        motions("motions_no_limbs", " --no-limbs"),
+        {"bullet_scenes",
+         figures + "bullet_scenes.json",
+         "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes"
+         " --solvers bullet,quasi-newton-3,small --no-videos --out OUT",
+         "bullet_scenes.json",
+         {},
+         {}},
+        {"engine",
+         figures + "engine_bench.json",
+         benchmark_command("engine_bench"),
+         "report.json",
+         tidy_benchmark,
+         {}},
+        {"bfloat16_rollout",
+         figures + "bfloat16_rollout.json",
+         "build/release/demos/compare --garment tshirt --motion 01_01 --frames 15"
+         " --reference-frames 15 --no-video --out OUT"
+         " --solvers fast+0,bf16-fast+0,fast,bf16-fast",
+         "report.json",
+         {},
+         {}},
+        {"self_contact",
+         figures + "self_contact.json",
+         "OMP_NUM_THREADS=1 " + benchmark_command("self_contact_bench"),
+         "report.json",
+         tidy_benchmark,
+         {}},
+    };
+}
+
+}  // namespace cloth

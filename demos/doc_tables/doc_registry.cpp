@@ -1,0 +1,39 @@
+#include "demos/doc_tables/data_sets.h"
+#include "demos/doc_tables/engine_tables.h"
+#include "demos/doc_tables/motion_tables.h"
+#include "demos/doc_tables/solver_tables.h"
+
+namespace cloth {
+
+namespace {
+
+/// Which command makes which file.
+MarkdownTable commands_table() {
+    MarkdownTable table;
+    table.heading = {"name", "file", "command"};
+    for (const DataSet& set : data_sets())
+        table.rows.push_back({set.name, "`" + set.file + "`", "`" + set.command + "`"});
+    return table;
+}
+
+}  // namespace
+
+const Registry& doc_registry() {
+    static const Registry registry = {
+        data_sets(),
+        {{"which_solver", {"speed_error"}, which_solver_table},
+         {"whole_motion", {"whole_motion"}, whole_motion_table},
+         {"speed_error", {"speed_error"}, speed_error_table},
+         {"hard_cases", {"hard_cases"}, hard_cases_table},
+         {"motions", {"motions", "motions_no_limbs"}, motions_table},
+         {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},
+         {"engine", {"engine"}, engine_table},
+         {"bfloat16", {"engine"}, bfloat16_table},
+         {"edge_block", {"engine"}, edge_block_table},
+         {"bfloat16_rollout", {"bfloat16_rollout"}, bfloat16_rollout_table},
+         {"self_contact", {"self_contact"}, self_contact_table},
+         {"commands", {}, [](const std::vector<DataFile>&) { return commands_table(); }}}};
+    return registry;
+}
+
+}  // namespace cloth

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "demos/doc_tables/registry.h"
+
+namespace cloth {
+
+/// Reports of `hard_cases`: scenes and motions that are held or not.
+MarkdownTable hard_cases_table(const std::vector<DataFile>& files);
+/// @param files  with limbs, and as one surface
+MarkdownTable motions_table(const std::vector<DataFile>& files);
+
+/// Report of `bullet_scenes`.
+MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files);
+
+}  // namespace cloth

@@ -1,0 +1,138 @@
+#include "demos/doc_tables/solver_tables.h"
+
+#include <array>
+
+namespace cloth {
+
+namespace {
+
+std::string failure_of(const DataRow& row) {
+    if (row.is_null("/first_failed_frame")) return "–";
+    return "frame " + decimals(row.number("/first_failed_frame"), 0) + ": " + row.text("/failure");
+}
+
+/// A distance in mm, to the millimetre, below 10 to a tenth of it.
+std::string millimetres(double value) {
+    return decimals(value, value < 9.95 ? 1 : 0);
+}
+
+/// Rows of speed_error.json with soft cotton.
+DataRow soft_row(const DataFile& file, const std::string& scene, const std::string& solver) {
+    return file.row("rows", {{"scene", scene}, {"fabric", "soft"}, {"solver", solver}});
+}
+
+constexpr std::array<const char*, 3> scenes = {"tshirt", "sphere", "sheet"};
+
+}  // namespace
+
+MarkdownTable whole_motion_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver",
+                     "ms per frame",
+                     "one step: gap",
+                     "progress",
+                     "RMSE (mm)",
+                     "rollout: RMSE (mm)",
+                     "to the fine solution (mm)",
+                     "deepest point inside (mm)",
+                     "failure"};
+    for (const DataRow& row : files.at(0).rows("solvers"))
+        table.rows.push_back({row.text("/name"), decimals(row.number("/ms_per_frame/median"), 1),
+                              significant(row.number("/one_step/gap/median"), 3),
+                              scientific(row.number("/one_step/progress/median")),
+                              decimals(row.number("/one_step/rmse_mm"), 1),
+                              decimals(row.number("/rollout/rmse_mm"), 0),
+                              decimals(row.number("/rollout/fine_rmse_mm"), 0),
+                              decimals(row.number("/rollout/penetration/max_mm"), 0),
+                              failure_of(row)});
+    return table;
+}
+
+MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
+    static const char* const solvers[] = {"bullet-10x2",
+                                          "bullet-10x8",
+                                          "xpbd-20",
+                                          "xpbd-40",
+                                          "xpbd-100",
+                                          "quasi-newton-1",
+                                          "quasi-newton-3",
+                                          "quasi-newton-10",
+                                          "quasi-newton",
+                                          "quasi-newton-30",
+                                          "quasi-newton-3-bdf2",
+                                          "quasi-newton-10-bdf2",
+                                          "quasi-newton-bdf2",
+                                          "newton-3",
+                                          "reference",
+                                          "small+0",
+                                          "small+3",
+                                          "small+10",
+                                          "small",
+                                          "small+10-bdf2",
+                                          "fast+0",
+                                          "fast+3",
+                                          "fast+10",
+                                          "fast",
+                                          "fast+10-bdf2",
+                                          "reduction+10",
+                                          "sampling+10",
+                                          "baseline+0",
+                                          "baseline+10"};
+    MarkdownTable table;
+    table.heading = {"solver", "T-shirt: time",       "gap", "mm", "sphere: time", "gap",
+                     "mm",     "hanging sheet: time", "gap", "mm"};
+    for (const char* solver : solvers) {
+        std::vector<std::string> cells = {solver};
+        for (const char* scene : scenes) {
+            const DataRow row = soft_row(files.at(0), scene, solver);
+            cells.push_back(significant(row.number("/ms_ratio"), 2));
+            cells.push_back(significant(row.number("/gap_median"), 2));
+            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
+                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
+        }
+        table.rows.push_back(cells);
+    }
+    return table;
+}
+
+MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
+    static const std::pair<const char*, const char*> choices[] = {
+        {"xpbd-40", "the body carries the cloth, and time is short"},
+        {"quasi-newton", "in general: holds every hard case, needs no network"},
+        {"quasi-newton-bdf2", "cloth hangs free and swings"},
+        {"small", "the learned solver: a network, then quasi-Newton iterations"},
+        {"reference", "off-line: each step is solved to convergence"}};
+    const auto time = [&](const char* scene, const char* solver) {
+        return soft_row(files.at(0), scene, solver).number("/ms_median");
+    };
+    MarkdownTable table;
+    table.heading = {"solver",
+                     "use it when",
+                     "T-shirt: time (quasi-newton is 1)",
+                     "mm to the fine solution",
+                     "sheet on a sphere: time",
+                     "mm",
+                     "hanging sheet: time",
+                     "mm"};
+    for (const auto& [solver, when] : choices) {
+        std::vector<std::string> cells = {solver, when};
+        for (const char* scene : scenes) {
+            cells.push_back(significant(time(scene, solver) / time(scene, "quasi-newton"), 2));
+            cells.push_back(
+                millimetres(soft_row(files.at(0), scene, solver).number("/fine_rmse_mm")));
+        }
+        table.rows.push_back(cells);
+    }
+    return table;
+}
+
+MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver", "one step: gap", "rollout: RMSE (mm)"};
+    for (const DataRow& row : files.at(0).rows("solvers"))
+        table.rows.push_back({row.text("/name"), significant(row.number("/one_step/gap/median"), 3),
+                              decimals(row.number("/rollout/rmse_mm"), 1)});
+    return table;
+}
+
+}  // namespace cloth

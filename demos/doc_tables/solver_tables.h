@@ -1,0 +1,13 @@
+#pragma once
+
+#include "demos/doc_tables/registry.h"
+
+namespace cloth {
+
+/// Reports of `compare` and `speed_error`: one garment, all solvers.
+MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
+MarkdownTable speed_error_table(const std::vector<DataFile>& files);
+MarkdownTable which_solver_table(const std::vector<DataFile>& files);
+MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files);
+
+}  // namespace cloth
