@@ -1,16 +1,23 @@
 // Trains a cloth network on the incremental potential.
 //
-//     train --variant fast --width 32 --minutes 60 --out out/fast
-//     train --variant baseline --recipe paper --device cuda --iterations 110000 --out out/baseline
+//     train --iterations 250000 --out out/kicks
+//     train --variant baseline --recipe paper --width 128 --steps 21 --device cuda
+//           --iterations 110000 --out out/baseline
+
+#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
+#include <cerrno>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <iostream>
+#include <map>
 #include <string>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/train/trainer.h"
 
@@ -18,17 +25,58 @@ namespace {
 
 std::atomic<bool> g_stop{false};
 
-void on_signal(int) {
+/// The first asks for a checkpoint and an end, the second ends the program at once.
+void on_signal(int signal) {
     g_stop = true;
+    std::signal(signal, SIG_DFL);
 }
 
 struct Options {
     cloth::TrainerSettings settings;
-    std::string variant = "fast", recipe = "quick", loss;
-    int width = 128, steps = 21;
+    std::string variant = "fast", recipe = "kicks", loss;
+    int width = 32, steps = 8, nice = 0;
     bool force_features = true, resume = false;
-    double learning_rate = 0.0;
-    int heal = 0;
+    std::map<std::string, double> recipe_values;  ///< of recipe_options
+};
+
+using cloth::Recipe;
+
+struct RecipeOption {
+    const char *name, *type, *description;
+    void (*set)(Recipe&, double);
+};
+
+const RecipeOption recipe_options[] = {
+    {"--learning-rate", "R", "", [](Recipe& r, double v) { r.base_rate = v; }},
+    {"--position-weight", "W", "of the error of position in the loss",
+     [](Recipe& r, double v) { r.position_weight = v; }},
+    {"--target-iterations", "K",
+     "quasi-Newton iterations to the target of the loss, a healed state too",
+     [](Recipe& r, double v) { r.target_iterations = static_cast<int>(v); }},
+    {"--loss-iterations", "K", "quasi-Newton iterations between the network's answer and the loss",
+     [](Recipe& r, double v) { r.loss_iterations = static_cast<int>(v); }},
+    {"--heal", "K", "quasi-Newton iterations of warm-up frames",
+     [](Recipe& r, double v) { r.heal_iterations = static_cast<int>(v); }},
+    {"--healed-first", "P", "share of next states that are the solver's, at the start",
+     [](Recipe& r, double v) { r.heal_first = v; }},
+    {"--healed-last", "P", "the same at the end", [](Recipe& r, double v) { r.heal_last = v; }},
+    {"--own-refined", "P", "share of the network's own next states that iterations refine",
+     [](Recipe& r, double v) { r.own_refined = v; }},
+    {"--own-iterations", "K", "these iterations",
+     [](Recipe& r, double v) { r.own_iterations = static_cast<int>(v); }},
+    {"--kicks", "P", "share of the iterations that perturb their scene",
+     [](Recipe& r, double v) { r.kicks.share = v; }},
+    {"--skinned", "P",
+     "share of T-shirt scenes that start posed with the body in the midst of a motion",
+     [](Recipe& r, double v) { r.skinned.share = v; }},
+    {"--skinned-at-rest", "P", "share of these that start without velocity",
+     [](Recipe& r, double v) { r.skinned.at_rest = v; }},
+    {"--skinned-noise", "M", "noise of their positions (m)",
+     [](Recipe& r, double v) { r.skinned.noise = v; }},
+    {"--noise", "M", "noise of positions, for single steps (m)",
+     [](Recipe& r, double v) { r.noise = v; }},
+    {"--rollout", "N", "steps of the network from its own states in an iteration",
+     [](Recipe& r, double v) { r.max_rollout = static_cast<int>(v); }},
 };
 
 Options parse(int count, char** arguments) {
@@ -39,31 +87,56 @@ Options parse(int count, char** arguments) {
                  "train");
     app.option_defaults()->take_last();
     const auto add = [&app](const char* name, auto& value, const char* type,
-                            const char* description) {
-        app.add_option(name, value, description)->type_name(type);
+                            const char* description, const char* group = "Options") {
+        return app.add_option(name, value, description)->type_name(type)->group(group);
     };
     add("--variant", options.variant, "NAME", "baseline, sampling, reduction or fast (fast)");
-    add("--recipe", options.recipe, "NAME",
-        "quick: an hour on a processor core; paper: FastClothGNN's (quick)");
-    add("--loss", options.loss, "NAME", "energy, log or both (the recipe's)");
-    add("--minutes", settings.minutes, "M", "wall time of the training");
-    add("--iterations", settings.iterations, "N", "end after so many iterations");
-    add("--width", options.width, "D", "latent size, a multiple of 16 trains fastest (128)");
-    add("--steps", options.steps, "L", "message passing steps (21)");
+    add("--width", options.width, "D", "latent size, a multiple of 16 trains fastest (32)");
+    add("--steps", options.steps, "L", "message passing steps (8)");
     add("--force-features", options.force_features, "0|1",
         "forces at x_t and at the guess as input (1)");
-    add("--learning-rate", options.learning_rate, "R", "(the recipe's)");
-    add("--heal", options.heal, "K", "quasi-Newton iterations of a healed state (6)");
+    add("--recipe", options.recipe, "NAME",
+        "kicks: perturbed states, error of position in the loss; own: goes on from weights of "
+        "kicks, on the network's own states; quick; paper: FastClothGNN's (kicks)");
+    add("--weights", settings.start_weights, "FILE", "start from these weights");
+    add("--minutes", settings.minutes, "M", "wall time of the training");
+    add("--iterations", settings.iterations, "N", "end after so many iterations");
     add("--pool", settings.pool, "N", "scenes trained on in turn (40)");
     add("--tshirt-share", settings.scenes.tshirt_share, "P", "share of T-shirt scenes (0.65)");
     add("--garment", garment, "FILE", "train on this T-shirt of data/assets alone");
     add("--seed", settings.seed, "S", "(1)");
     add("--threads", settings.threads, "N", "of LibTorch (1)");
     add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
-    add("--validate-every", settings.validate_every, "N", "iterations (500)");
+    add("--nice", options.nice, "N", "lower priority, 0 to 19 (0)");
     add("--out", settings.out, "DIR",
-        "checkpoint.pt, metrics.csv, weights.safetensors (out/train)");
+        "checkpoint.pt, weights.safetensors, metrics.csv, rollouts.csv (out/train)");
+    add("--save-every", settings.save_every, "M", "minutes between checkpoints (3)");
     app.add_flag("--resume", options.resume, "go on from the checkpoint in DIR");
+
+    const char* const recipe = "Instead of the recipe's";
+    add("--loss", options.loss, "NAME", "energy, log or both", recipe);
+    for (const RecipeOption& option : recipe_options)
+        app.add_option_function<double>(
+               option.name,
+               [&options, &option](double value) { options.recipe_values[option.name] = value; },
+               option.description)
+            ->type_name(option.type)
+            ->group(recipe);
+
+    const char* const validation =
+        "Validation, single steps and rollouts in the stepper as it is used";
+    add("--validation-every", settings.validate_every, "M", "minutes in between (10)", validation);
+    add("--validation-share", settings.validation_share, "P", "of the time at most; 0: none (0.1)",
+        validation);
+    add("--validation-clips", settings.rollouts.clips, "A,B,...",
+        "motions (those of the shared data folder, else 01_01)", validation)
+        ->delimiter(',')
+        ->take_all();
+    add("--validation-frames", settings.rollouts.frames, "N", "of a rollout (90)", validation);
+    add("--validation-sheet", settings.rollouts.sheet_vertices, "N",
+        "vertices of the sheets; 0: none (1000)", validation);
+    add("--references", settings.references, "DIR", "where references are kept (DIR/references)",
+        validation);
     try {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
@@ -82,9 +155,24 @@ cloth::TrainerSettings make_settings(const Options& options) {
     settings.model = cloth::ModelConfig::from_json(settings.model.to_json(), "command line");
     settings.recipe = cloth::Recipe::named(options.recipe, options.width);
     if (!options.loss.empty()) settings.recipe.loss = cloth::loss_named(options.loss);
-    if (options.learning_rate > 0.0) settings.recipe.base_rate = options.learning_rate;
-    if (options.heal > 0) settings.recipe.heal_iterations = options.heal;
+    for (const RecipeOption& option : recipe_options) {
+        const auto given = options.recipe_values.find(option.name);
+        if (given != options.recipe_values.end()) option.set(settings.recipe, given->second);
+    }
     return settings;
+}
+
+void lower_priority(int nice_value) {
+    cloth::check_range("--nice", nice_value, 0, 19);
+    if (nice_value > 0 && setpriority(PRIO_PROCESS, 0, nice_value) != 0)
+        std::cerr << "train: the priority stays as it is: " << std::strerror(errno) << "\n";
+}
+
+/// A training of days must not be lost because an option was forgotten.
+void refuse_to_overwrite(const std::string& folder) {
+    if (std::filesystem::exists(folder + "/checkpoint.pt"))
+        throw cloth::ArgumentError(folder, "has a training already",
+                                   "give --resume to go on with it, or another --out");
 }
 
 }  // namespace
@@ -92,12 +180,15 @@ cloth::TrainerSettings make_settings(const Options& options) {
 int main(int count, char** arguments) {
     try {
         const Options options = parse(count, arguments);
+        if (!options.resume) refuse_to_overwrite(options.settings.out);
+        lower_priority(options.nice);
         cloth::Trainer trainer(make_settings(options));
         if (options.resume && !trainer.resume())
             std::cerr << "train: no checkpoint in " << options.settings.out << ", starting anew\n";
         std::signal(SIGINT, on_signal);
         std::signal(SIGTERM, on_signal);
         trainer.run(g_stop);
+        if (g_stop) std::cerr << "train: stopped; --resume goes on\n";
         std::cerr << "train: weights in " << options.settings.out << "/weights.safetensors\n";
     } catch (const std::exception& error) {
         std::cerr << "train: " << error.what() << "\n";

@@ -33,8 +33,13 @@ Eigen::VectorXd to_vector(const Tensor& tensor) {
 
 std::string describe(const TrainerSettings& settings) {
     std::ostringstream text;
-    text << settings.model.to_json() << " recipe " << settings.recipe.name << " seed "
-         << settings.seed << " pool " << settings.pool;
+    text << settings.model.to_json() << ' ' << settings.recipe.describe() << " seed "
+         << settings.seed << " pool " << settings.pool << " statistics "
+         << settings.freeze_statistics << " T-shirts " << settings.scenes.tshirt_share << ' '
+         << settings.scenes.shape_share << ' ' << settings.scenes.fabric_share;
+    for (const std::string& garment : settings.scenes.garments) text << ' ' << garment;
+    for (const int size : settings.scenes.sheet_sizes) text << ' ' << size;
+    if (!settings.start_weights.empty()) text << " from weights";
     return text.str();
 }
 
@@ -107,8 +112,9 @@ void Trainer::load(const std::string& file) {
     m_edge.set_state(to_vector(read(archive, "statistics.edge").cpu()));
     m_world.set_state(to_vector(read(archive, "statistics.world").cpu()));
     m_body.set_state(to_vector(read(archive, "statistics.body").cpu()));
-    m_network.set_statistics(
-        {m_node.statistics(), m_edge.statistics(), m_world.statistics(), m_body.statistics()});
+    if (m_settings.start_weights.empty())
+        m_network.set_statistics(
+            {m_node.statistics(), m_edge.statistics(), m_world.statistics(), m_body.statistics()});
     m_pool.clear();
     for (int slot = 0; slot < m_settings.pool; ++slot) {
         const std::string key = "scene" + std::to_string(slot);

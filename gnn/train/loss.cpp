@@ -70,11 +70,27 @@ static void take_both(const LossProblem& problem, const Points& x, LossValue& lo
     loss.gradient += p_d / (base_error * error * (error + 0.1));
 }
 
+static void add_position(const LossProblem& problem, const Points& x, LossValue& loss) {
+    const Garment& garment = problem.potential->garment();
+    const auto weighted = [&](Points d) {
+        for (Eigen::Index i = 0; i < d.rows(); ++i)
+            d.row(i) *= garment.is_pinned()[static_cast<size_t>(i)] ? 0.0 : garment.masses()[i];
+        return d;
+    };
+    const Points d = x - *problem.target, d_base = *problem.base - *problem.target;
+    const Points m_d = weighted(d);
+    const double base_error = std::max(d_base.cwiseProduct(weighted(d_base)).sum(), 1e-18);
+    loss.error = std::sqrt(std::max(d.cwiseProduct(m_d).sum(), 1e-12 * base_error) / base_error);
+    loss.value += problem.position_weight * std::log(loss.error + 0.1);
+    loss.gradient += problem.position_weight * m_d / (base_error * loss.error * (loss.error + 0.1));
+}
+
 void evaluate_loss(LossKind kind, const LossProblem& problem, const Points& x, LossValue& loss) {
     loss.energy = problem.potential->value_gradient(x, loss.gradient);
     loss.value = loss.energy;
     if (kind == LossKind::log) take_log(problem, loss);
     if (kind == LossKind::both) take_both(problem, x, loss);
+    if (problem.position_weight > 0.0) add_position(problem, x, loss);
 }
 
 }  // namespace cloth

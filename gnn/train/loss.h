@@ -25,12 +25,16 @@ struct LossProblem {
     const Points* base = nullptr;        ///< |V| x 3 (m): the guess
     const Points* target = nullptr;      ///< |V| x 3 (m): what the solver found; LossKind::both
     double scale = 0.0;                  ///< of the network's output (m)
+    /// Of log(e + 0.1) in the loss, e = |x - target| / |base - target| with the masses as weights:
+    /// the error of low frequency, which energy and strain hardly see. 0: it is left out.
+    double position_weight = 0.0;
 };
 
 struct LossValue {
     double value = 0.0;
     double energy = 0.0;  ///< of the prediction (J)
     double gap = 0.0;     ///< (E(x) - E(target)) / (E(base) - E(target)); LossKind::both
+    double error = 0.0;   ///< e, where it has a weight
     Points gradient;      ///< |V| x 3: of the loss by the predicted positions (1/m)
 };
 

@@ -101,4 +101,23 @@ SceneParts make_sheet_parts(const TriMesh& flat, const Fabric& fabric, SceneRand
     return parts;
 }
 
+SceneParts make_test_sheet(int vertices, bool held) {
+    const TriMesh flat = make_sheet(0.6, 0.6, vertices);
+    const std::vector<int> corners = sheet_corners(flat);
+    const std::vector<int> pins =
+        held ? std::vector<int>{corners[0], corners[1]} : std::vector<int>();
+    SceneParts parts;
+    parts.kind = "sheet";
+    auto garment = std::make_shared<Garment>("sheet", flat, Fabric::soft_cotton(), pins);
+    parts.start = ClothState::at_rest(*garment);
+    Points targets(static_cast<Eigen::Index>(pins.size()), 3);
+    for (Eigen::Index k = 0; k < targets.rows(); ++k)
+        targets.row(k) = flat.vertices.row(garment->pins()[static_cast<size_t>(k)]);
+    std::vector<Ball> balls;
+    if (!held) balls.push_back({Vec3(0.03, -0.2, 0.02), 0.15, {}});
+    parts.world = std::make_unique<SheetWorld>(targets, Swing(), std::move(balls));
+    parts.garment = garment;
+    return parts;
+}
+
 }  // namespace cloth

@@ -6,7 +6,7 @@
 
 #include "data/body/animated_body.h"
 #include "data/body/body_shapes.h"
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
 #include "gnn/train/sheet_world.h"
@@ -29,6 +29,16 @@ std::vector<std::string> training_motions() {
 }
 
 }  // namespace
+
+void SceneSettings::check() const {
+    check_range("SceneSettings.tshirt_share", tshirt_share, 0.0, 1.0);
+    check_range("SceneSettings.shape_share", shape_share, 0.0, 1.0);
+    check_range("SceneSettings.fabric_share", fabric_share, 0.0, 1.0);
+    check_range("SceneSettings.sheet_sizes", static_cast<double>(sheet_sizes.size()), 1, 100);
+    for (const int size : sheet_sizes) check_range("SceneSettings.sheet_sizes", size, 9, 200000);
+    check_range("SceneSettings.max_warm_up", max_warm_up, 0, 1000);
+    skinned.check();
+}
 
 struct SceneFactory::Assets {
     std::vector<TriMesh> sheets;
@@ -74,13 +84,12 @@ bool SceneFactory::has_tshirts() const {
            !m_assets->motions.empty();
 }
 
-static std::unique_ptr<TrainingScene> finish(SceneParts parts, std::uint64_t seed,
-                                             const ModelConfig& config) {
+std::unique_ptr<TrainingScene> SceneFactory::finish(SceneParts parts, std::uint64_t seed) const {
     parts.seed = seed;
     if (!parts.graph)
         parts.graph = std::make_shared<const ClothGraph>(
-            build_cloth_graph(*parts.garment, config.graph_settings()));
-    return std::make_unique<TrainingScene>(std::move(parts), config.features, config.dt);
+            build_cloth_graph(*parts.garment, m_config.graph_settings()));
+    return std::make_unique<TrainingScene>(std::move(parts), m_config.features, m_config.dt);
 }
 
 std::unique_ptr<TrainingScene> SceneFactory::make_sheet(std::uint64_t seed) const {
@@ -90,7 +99,7 @@ std::unique_ptr<TrainingScene> SceneFactory::make_sheet(std::uint64_t seed) cons
             ->sheets[static_cast<size_t>(random.below(static_cast<int>(m_assets->sheets.size())))];
     const Fabric fabric =
         random.chance(m_settings.fabric_share) ? random.fabric() : Fabric::soft_cotton();
-    return finish(make_sheet_parts(flat, fabric, random), seed, m_config);
+    return finish(make_sheet_parts(flat, fabric, random), seed);
 }
 
 std::unique_ptr<TrainingScene> SceneFactory::make_tshirt(std::uint64_t seed,
@@ -104,7 +113,7 @@ std::unique_ptr<TrainingScene> SceneFactory::make_tshirt(std::uint64_t seed,
         std::make_shared<const Garment>("tshirt", m_assets->garments[which], Fabric::soft_cotton()),
         animated, 0.0);
     parts.graph = m_assets->graphs[which];
-    return finish(std::move(parts), seed, m_config);
+    return finish(std::move(parts), seed);
 }
 
 std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
@@ -128,14 +137,25 @@ std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
         graph = nullptr;
     }
     const auto animated = std::make_shared<const AnimatedBody>(body, motion);
-    SceneParts parts =
-        make_body_parts(std::make_shared<const Garment>("tshirt", std::move(rest), fabric),
-                        animated, random.uniform(0.0, 2.0 * M_PI));
+    const auto garment = std::make_shared<const Garment>("tshirt", std::move(rest), fabric);
+    const double yaw = random.uniform(0.0, 2.0 * M_PI);
+    const int warm_up = random.below(m_settings.max_warm_up + 1);
+    const int longest = 30 + random.below(60);
+    const int frames = animated->frame_count(m_config.dt);
+    const bool skinned = m_settings.skinned.share > 0.0 && random.chance(m_settings.skinned.share);
+    const int first = skinned ? random.below(std::max(1, frames - 30)) : warm_up;
+    SceneParts parts;
+    if (skinned) {
+        const ClothState start = skinned_start(*garment, *animated, m_settings.skinned,
+                                               first * m_config.dt, m_config.dt, random);
+        parts = make_body_parts(garment, animated, yaw, &start);
+    } else {
+        parts = make_body_parts(garment, animated, yaw);
+        parts.warm_up = warm_up;
+    }
     parts.graph = graph;
-    parts.warm_up = random.below(m_settings.max_warm_up + 1);
-    const int frames = animated->frame_count(m_config.dt) - parts.warm_up;
-    parts.life = std::max(5, std::min(frames, 30 + random.below(60)));
-    return finish(std::move(parts), seed, m_config);
+    parts.life = std::max(5, std::min(frames - first, longest));
+    return finish(std::move(parts), seed);
 }
 
 }  // namespace cloth

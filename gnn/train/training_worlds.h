@@ -5,19 +5,26 @@
 #include <vector>
 
 #include "gnn/model/model_config.h"
+#include "gnn/train/skinned_start.h"
 #include "gnn/train/training_scene.h"
 
 namespace cloth {
 
 struct SceneSettings {
     double tshirt_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
-    double shape_share = 0.5;    ///< of T-shirt scenes with a sampled body shape, where available
-    double fabric_share = 0.6;   ///< of scenes with a sampled fabric; the others are soft cotton
-    std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices
+    double shape_share = 0.5;    ///< of T-shirt scenes with a sampled body shape, where available;
+                                 ///< 0 to 1
+    double fabric_share = 0.6;   ///< of scenes with a sampled fabric; the others are soft cotton;
+                                 ///< 0 to 1
+    std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices, 9 to 200,000 each
     std::vector<std::string> garments = {"garments/tshirt_1000.obj", "garments/tshirt_2000.obj",
                                          "garments/tshirt.obj"};  ///< in data/assets
     std::vector<std::string> motions;  ///< names or files; empty: all training clips there are
-    int max_warm_up = 40;              ///< frames
+    int max_warm_up = 40;              ///< frames, 0 to 1000
+    SkinnedStartSettings skinned;      ///< of T-shirt scenes; these have no warm-up
+
+    /// @throws ArgumentError if a value is out of its range
+    void check() const;
 };
 
 /// Makes training scenes: sheets pinned in various ways among moving spheres, and T-shirts on
@@ -36,6 +43,9 @@ class SceneFactory {
     std::unique_ptr<TrainingScene> make_tshirt(std::uint64_t seed, const std::string& motion,
                                                size_t garment) const;
     std::unique_ptr<TrainingScene> make_sheet(std::uint64_t seed) const;
+
+    /// A scene of other parts, for the factory's kind of network.
+    std::unique_ptr<TrainingScene> finish(SceneParts parts, std::uint64_t seed = 0) const;
 
     bool has_tshirts() const;
 

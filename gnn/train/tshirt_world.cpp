@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 namespace cloth {
 
@@ -29,12 +30,14 @@ class BodyWorld : public TrainingWorld {
 }  // namespace
 
 SceneParts make_body_parts(std::shared_ptr<const Garment> garment,
-                           std::shared_ptr<const AnimatedBody> body, double yaw) {
+                           std::shared_ptr<const AnimatedBody> body, double yaw,
+                           const ClothState* start) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(yaw, Vec3::UnitY()).toRotationMatrix();
     SceneParts parts;
     parts.kind = "tshirt";
-    parts.start = ClothState::at_rest(*garment);
+    parts.start = start ? *start : ClothState::at_rest(*garment);
     parts.start.x = (parts.start.x * turn.transpose()).eval();
+    parts.start.v = (parts.start.v * turn.transpose()).eval();
     parts.garment = std::move(garment);
     parts.world = std::make_unique<BodyWorld>(std::move(body), turn);
     return parts;
@@ -47,25 +50,33 @@ Motion motion_from(const Motion& motion, int frame, int least) {
     return part;
 }
 
-Points carry_garment(const Points& garment, const Points& skin_before, const Points& skin_after) {
-    const double width = 0.03;  // smooth over 3 cm of skin
-    const Points displacement = skin_after - skin_before;
-    Points carried = garment;
-    VectorX squared(skin_before.rows());
+void for_each_skin_neighbour(const Points& garment, const Points& skin,
+                             const std::function<void(Eigen::Index, Eigen::Index, double)>& use) {
+    const double width = 0.03;
+    VectorX squared(skin.rows());
+    std::vector<std::pair<Eigen::Index, double>> near;
     for (Eigen::Index i = 0; i < garment.rows(); ++i) {
-        squared = (skin_before.rowwise() - garment.row(i)).rowwise().squaredNorm();
+        squared = (skin.rowwise() - garment.row(i)).rowwise().squaredNorm();
         const double nearest = squared.minCoeff();
-        Vec3 sum = Vec3::Zero();
-        double weights = 0.0;
+        double sum = 0.0;
+        near.clear();
         for (Eigen::Index k = 0; k < squared.size(); ++k) {
             const double exponent = (squared[k] - nearest) / (2.0 * width * width);
             if (exponent > 9.0) continue;
-            const double weight = std::exp(-exponent);
-            sum += weight * displacement.row(k).transpose();
-            weights += weight;
+            near.emplace_back(k, std::exp(-exponent));
+            sum += near.back().second;
         }
-        carried.row(i) += (sum / weights).transpose();
+        for (const auto& [vertex, weight] : near) use(i, vertex, weight / sum);
     }
+}
+
+Points carry_garment(const Points& garment, const Points& skin_before, const Points& skin_after) {
+    const Points displacement = skin_after - skin_before;
+    Points carried = garment;
+    for_each_skin_neighbour(garment, skin_before,
+                            [&](Eigen::Index i, Eigen::Index vertex, double weight) {
+                                carried.row(i) += weight * displacement.row(vertex);
+                            });
     return carried;
 }
 

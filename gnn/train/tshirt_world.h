@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "data/body/animated_body.h"
 #include "gnn/train/scene_random.h"
 #include "gnn/train/training_scene.h"
@@ -9,11 +11,19 @@ namespace cloth {
 /// A garment on a moving body, the whole scene turned about the vertical.
 /// @param rest  the garment, made for the body's rest pose
 /// @param yaw   (rad)
+/// @param start  in the body's frame, before the turn; null: the rest pose, not moving
 SceneParts make_body_parts(std::shared_ptr<const Garment> garment,
-                           std::shared_ptr<const AnimatedBody> body, double yaw);
+                           std::shared_ptr<const AnimatedBody> body, double yaw,
+                           const ClothState* start = nullptr);
 
 /// The part of a motion from a frame on; at least `least` frames, from an earlier frame if need be.
 Motion motion_from(const Motion& motion, int frame, int least);
+
+/// Calls `use` with each garment vertex, each vertex of the skin around its nearest one, and that
+/// one's weight; the weights of a garment vertex sum to 1. Smooth over 3 cm of skin.
+/// @param garment, skin  |V| x 3 (m)
+void for_each_skin_neighbour(const Points& garment, const Points& skin,
+                             const std::function<void(Eigen::Index, Eigen::Index, double)>& use);
 
 /// Garment vertices (|V| x 3, m) carried along when the skin under them changes shape: each moves
 /// by the mean displacement of the skin around its nearest point.

@@ -1,8 +1,10 @@
 #include "gnn/train/validation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
+#include "data/core/check_range.h"
 #include "data/core/paths.h"
 
 namespace cloth {
@@ -24,8 +26,16 @@ static std::vector<std::string> held_out_clips() {
     return {"01_01"};
 }
 
+void ValidationSettings::check() const {
+    check_range("ValidationSettings.tshirt_states", tshirt_states, 0, 1000);
+    check_range("ValidationSettings.sheet_states", sheet_states, 0, 1000);
+    check_range("ValidationSettings.rollout_iterations", rollout_iterations, 1, 1000);
+    check_range("ValidationSettings.minimum_iterations", minimum_iterations, 1, 10000);
+}
+
 Validation::Validation(const SceneFactory& factory, ValidationSettings settings)
     : m_settings(settings) {
+    m_settings.check();
     if (factory.has_tshirts() && settings.tshirt_states > 0) {
         const std::vector<std::string> clips = held_out_clips();
         const int each = std::max(1, settings.tshirt_states / static_cast<int>(clips.size()));
@@ -43,35 +53,40 @@ void Validation::add_states(std::shared_ptr<TrainingScene> scene, int first_fram
         scene->prepare(full_contact_weight);
         Points x = scene->features().base;
         if (frame >= first_frame && (frame - first_frame) % every == 0) {
-            Points least = x;
-            m_states.push_back({scene, scene->state,
-                                scene->refine(least, m_settings.minimum_iterations),
-                                scene->potential().value(x)});
+            Points minimum = x;
+            const double least = scene->refine(minimum, m_settings.minimum_iterations);
+            m_states.push_back({scene, scene->state, least, scene->potential().value(x), minimum});
         }
         scene->refine(x, m_settings.rollout_iterations);
         if (!scene->advance(x)) return;
     }
 }
 
-static GapSummary summarise(std::vector<double> gaps) {
+static GapSummary summarise(std::vector<double> gaps, std::vector<double> errors) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    if (gaps.empty()) return {nan, nan};
+    if (gaps.empty()) return {nan, nan, nan};
     std::sort(gaps.begin(), gaps.end());
+    std::sort(errors.begin(), errors.end());
     const size_t n = gaps.size();
-    return {0.5 * (gaps[(n - 1) / 2] + gaps[n / 2]), gaps[std::min(n - 1, n * 95 / 100)]};
+    const auto median = [n](const std::vector<double>& sorted) {
+        return 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+    };
+    return {median(gaps), gaps[std::min(n - 1, n * 95 / 100)], median(errors)};
 }
 
 template <typename Predict>
 ValidationResult Validation::measure_with(Predict predict) {
-    std::vector<double> tshirt, sheet;
+    std::vector<double> gaps[2], errors[2];  // of T-shirts and of sheets
     for (const State& state : m_states) {
         state.scene->state = state.state;
         state.scene->prepare(full_contact_weight);
-        const double energy = state.scene->potential().value(predict(*state.scene));
-        const double gap = (energy - state.least) / std::max(state.base - state.least, 1e-12);
-        (state.scene->parts().kind == "sheet" ? sheet : tshirt).push_back(gap);
+        const Points x = predict(*state.scene);
+        const double energy = state.scene->potential().value(x);
+        const int kind = state.scene->parts().kind == "sheet";
+        gaps[kind].push_back((energy - state.least) / std::max(state.base - state.least, 1e-12));
+        errors[kind].push_back(1e3 * std::sqrt((x - state.minimum).rowwise().squaredNorm().mean()));
     }
-    return {summarise(tshirt), summarise(sheet)};
+    return {summarise(gaps[0], errors[0]), summarise(gaps[1], errors[1])};
 }
 
 ValidationResult Validation::measure(Network& network) {

@@ -30,11 +30,16 @@ struct GuardSettings {
     int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
     IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part
 
+    /// No step is cut.
+    static GuardSettings limbs_alone() {
+        GuardSettings settings;
+        settings.max_substeps = 1;
+        return settings;
+    }
     /// Every step is taken as it is.
     static GuardSettings off() {
-        GuardSettings settings;
+        GuardSettings settings = limbs_alone();
         settings.limbs = false;
-        settings.max_substeps = 1;
         return settings;
     }
 };

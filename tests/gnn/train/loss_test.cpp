@@ -35,7 +35,7 @@ class Loss : public testing::Test {
     }
 
     LossProblem problem() const {
-        return {&m_potential, &m_laplacian, &m_boundary, &m_base, &m_target, 0.011};
+        return {&m_potential, &m_laplacian, &m_boundary, &m_base, &m_target, 0.011, 0.0};
     }
 
     const double m_dt = 1.0 / 30.0;
@@ -69,6 +69,37 @@ TEST_P(LossGradient, EqualsFiniteDifferences) {
 
 INSTANTIATE_TEST_SUITE_P(Kinds, LossGradient,
                          testing::Values(LossKind::energy, LossKind::log, LossKind::both));
+
+TEST_P(LossGradient, EqualsFiniteDifferencesWithPositions) {
+    LossProblem with_positions = problem(), without = problem();
+    with_positions.position_weight = 2.0;
+    LossValue loss, plain, up, down;
+    evaluate_loss(GetParam(), with_positions, m_x, loss);
+    evaluate_loss(GetParam(), without, m_x, plain);
+    EXPECT_NEAR(loss.value - plain.value, 2.0 * std::log(loss.error + 0.1), 1e-12);
+    const double h = 1e-7, scale = loss.gradient.cwiseAbs().maxCoeff();
+    for (Eigen::Index i = 1; i < m_x.rows(); i += 3)
+        for (int k = 0; k < 3; ++k) {
+            Points x = m_x;
+            x(i, k) += h;
+            evaluate_loss(GetParam(), with_positions, x, up);
+            x(i, k) -= 2 * h;
+            evaluate_loss(GetParam(), with_positions, x, down);
+            EXPECT_NEAR(loss.gradient(i, k), (up.value - down.value) / (2 * h), 1e-4 * scale);
+        }
+    EXPECT_EQ(loss.gradient.row(0).norm(), 0.0) << "pinned vertices are not the network's";
+}
+
+TEST_F(Loss, PositionErrorIsOneAtTheGuessAndZeroAtTheTarget) {
+    LossProblem with_positions = problem();
+    with_positions.position_weight = 1.0;
+    LossValue loss;
+    evaluate_loss(LossKind::both, with_positions, m_base, loss);
+    EXPECT_NEAR(loss.error, 1.0, 1e-12);
+    evaluate_loss(LossKind::both, with_positions, m_target, loss);
+    EXPECT_NEAR(loss.error, 0.0, 1e-5);
+    EXPECT_TRUE(loss.gradient.allFinite());
+}
 
 TEST_F(Loss, FloorIsBelowTheMinimum) {
     const double floor = energy_floor(m_potential, m_boundary, m_base);

@@ -1,0 +1,219 @@
+#include "gnn/train/rollout_validation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+
+#include "collision/proximity/metrics.h"
+#include "data/body/motion.h"
+#include "data/core/check_range.h"
+#include "data/core/paths.h"
+#include "gnn/model/make_cloth.h"
+#include "gnn/train/reference_file.h"
+#include "gnn/train/sheet_world.h"
+
+namespace cloth {
+
+namespace {
+
+std::vector<std::string> default_clips() {
+    if (const auto folder = shared_data_path("motions/validation")) return list_motions(*folder);
+    return {"01_01"};
+}
+
+double rms_distance(const Points& a, const Points& b) {
+    return std::sqrt((a - b).rowwise().squaredNorm().mean());
+}
+
+/// Tells one garment at rest and its fabric from another (FNV-1a).
+std::uint64_t fingerprint(const Garment& garment, const ClothState& start) {
+    std::uint64_t hash = 14695981039346656037ull;
+    const auto add = [&](const void* data, size_t bytes) {
+        for (size_t i = 0; i < bytes; ++i)
+            hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
+    };
+    const auto add_points = [&](const Points& points) {
+        add(points.data(), sizeof(double) * static_cast<size_t>(points.size()));
+    };
+    add_points(garment.rest().vertices);
+    add_points(start.x);
+    const Fabric& fabric = garment.fabric();
+    for (const double value : {fabric.density, fabric.mu, fabric.lambda, fabric.bending})
+        add(&value, sizeof value);
+    return hash;
+}
+
+}  // namespace
+
+struct RolloutValidation::Scene {
+    std::string name;
+    std::unique_ptr<TrainingScene> scene;
+    int lead_in = 0;
+    std::vector<Points> reference;  ///< after the lead-in, and after each frame
+    Points start_velocities;
+
+    Boundary boundary(double time) const {
+        Boundary out;
+        scene->parts().world->boundary(time, scene->dt(), out);
+        return out;
+    }
+    ClothState start() const {
+        return {reference.front(), start_velocities,
+                scene->parts().start.time + lead_in * scene->dt()};
+    }
+};
+
+void RolloutSettings::check() const {
+    if (sheet_vertices != 0)
+        check_range("RolloutSettings.sheet_vertices", sheet_vertices, 9, 200000);
+    check_range("RolloutSettings.frames", frames, 1, 10000);
+    for (const int count : iterations) check_range("RolloutSettings.iterations", count, 0, 100);
+    check_range("RolloutSettings.reference_iterations", reference_iterations, 1, 1000);
+    check_range("RolloutSettings.threads", threads, 1, 256);
+}
+
+RolloutValidation::RolloutValidation(const SceneFactory& factory, const RolloutSettings& settings,
+                                     const std::string& folder)
+    : m_settings(settings), m_folder(folder) {
+    m_settings.check();
+    if (m_settings.clips.empty()) m_settings.clips = default_clips();
+    if (factory.has_tshirts())
+        for (const std::string& clip : m_settings.clips)
+            add(std::filesystem::path(clip).stem().string(),
+                factory.make_tshirt(1, clip, m_settings.garment), -1);
+    if (m_settings.sheet_vertices == 0) return;
+    for (const bool held : {true, false})
+        add(held ? "sheet-hanging" : "sheet-sphere",
+            factory.finish(make_test_sheet(m_settings.sheet_vertices, held)), 0);
+}
+
+RolloutValidation::~RolloutValidation() = default;
+
+/// @param lead_in  frames; negative: that of bodies
+void RolloutValidation::add(const std::string& name, std::unique_ptr<TrainingScene> scene,
+                            int lead_in) {
+    auto added = std::make_unique<Scene>();
+    added->name = name;
+    if (lead_in < 0)
+        lead_in = static_cast<int>(std::lround(AnimationSettings().lead_in / scene->dt()));
+    added->lead_in = lead_in;
+    added->scene = std::move(scene);
+    m_scenes.push_back(std::move(added));
+}
+
+/// @return false: stopped
+bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& stop) const {
+    if (!scene.reference.empty()) return true;
+    const Garment& garment = scene.scene->garment();
+    const ClothState& start = scene.scene->parts().start;
+    std::ostringstream name;
+    name << m_folder << '/' << scene.name << '_' << garment.vertex_count() << '_'
+         << m_settings.frames << '_' << m_settings.reference_iterations << '_' << std::hex
+         << fingerprint(garment, start) << ".pt";
+    const std::string file = name.str();
+    if (load_reference(file, garment.vertex_count(), m_settings.frames, scene.reference,
+                       scene.start_velocities))
+        return true;
+    ClothSettings solver;
+    IterationLimits& limits = solver.step.quasi_newton;
+    limits.iterations = m_settings.reference_iterations;
+    limits.least_iterations = std::min(20, limits.iterations);
+    limits.least_gain = 1e-4;
+    solver.guard = GuardSettings::limbs_alone();
+    const auto stepper = make_cloth(garment, solver);
+    ClothState state = start;
+    std::vector<Points> trajectory;
+    for (int frame = 0; frame < scene.lead_in + m_settings.frames; ++frame) {
+        if (stop) return false;
+        if (frame == scene.lead_in) {
+            trajectory = {state.x};
+            scene.start_velocities = state.v;
+        }
+        stepper->step(scene.boundary(state.time), scene.scene->dt(), state);
+        if (frame >= scene.lead_in) trajectory.push_back(state.x);
+    }
+    scene.reference = std::move(trajectory);
+    save_reference(file, scene.reference, scene.start_velocities);
+    return true;
+}
+
+/// @return false: stopped
+bool RolloutValidation::roll(const Scene& scene, Stepper& stepper, RolloutResult& result,
+                             const std::atomic<bool>& stop) const {
+    ClothState state = scene.start();
+    double sum = 0.0;
+    while (result.held < m_settings.frames && result.failure.empty()) {
+        if (stop) return false;
+        const StepReport report =
+            stepper.step(scene.boundary(state.time), scene.scene->dt(), state);
+        const double distance =
+            rms_distance(state.x, scene.reference[static_cast<size_t>(result.held) + 1]);
+        const double stretch = measure_stretch(scene.scene->garment(), state.x).p99;
+        if (!report.finite || !state.x.allFinite()) {
+            result.failure = "not finite";
+            break;
+        }
+        result.stretch = std::max(result.stretch, stretch);
+        result.penetration = std::max(result.penetration, report.max_penetration);
+        if (stretch > 2.0)
+            result.failure = "torn";
+        else if (!(distance <= RolloutResult::lost_distance))
+            result.failure = "lost";
+        else {
+            sum += distance;
+            ++result.held;
+        }
+    }
+    sum += RolloutResult::lost_distance * (m_settings.frames - result.held);
+    result.distance = sum / m_settings.frames;
+    return true;
+}
+
+bool RolloutValidation::prepare(const std::atomic<bool>& stop) {
+    return std::all_of(m_scenes.begin(), m_scenes.end(),
+                       [&](const auto& scene) { return find_reference(*scene, stop); });
+}
+
+std::optional<std::vector<RolloutResult>> RolloutValidation::measure(
+    const Weights& weights, const std::atomic<bool>& stop) {
+    if (!prepare(stop)) return std::nullopt;
+    const auto packed = std::make_shared<const EngineWeights>(weights);
+    std::vector<RolloutResult> results;
+    for (const auto& scene : m_scenes) {
+        for (const int iterations : m_settings.iterations) {
+            ClothSettings settings;
+            settings.weights = packed;
+            settings.step.quasi_newton = IterationLimits::exactly(iterations);
+            settings.step.proximity.threads = m_settings.threads;
+            settings.engine.threads = m_settings.threads;
+            settings.guard = GuardSettings::limbs_alone();
+            const auto stepper = make_cloth(scene->scene->garment(), settings);
+            RolloutResult result;
+            result.scene = scene->name;
+            result.is_sheet = scene->scene->parts().kind == "sheet";
+            result.iterations = iterations;
+            result.frames = m_settings.frames;
+            if (!roll(*scene, *stepper, result, stop)) return std::nullopt;
+            results.push_back(result);
+        }
+    }
+    return results;
+}
+
+RolloutSummary summarise(const std::vector<RolloutResult>& results, bool sheets, int iterations) {
+    RolloutSummary sum;
+    int count = 0;
+    for (const RolloutResult& result : results) {
+        if (result.is_sheet != sheets || result.iterations != iterations) continue;
+        sum.held += result.held;
+        sum.distance_mm += 1e3 * result.distance;
+        sum.stretch += result.stretch;
+        ++count;
+    }
+    const double n = count > 0 ? count : std::numeric_limits<double>::quiet_NaN();
+    return {sum.held / n, sum.distance_mm / n, sum.stretch / n};
+}
+
+}  // namespace cloth

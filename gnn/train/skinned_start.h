@@ -1,0 +1,35 @@
+#pragma once
+
+#include "data/body/animated_body.h"
+#include "data/core/cloth_state.h"
+#include "gnn/train/scene_random.h"
+
+namespace cloth {
+
+/// Scenes that start with the garment posed like the skin under it, at any time of a motion: states
+/// that no simulation has to reach first, and that are no solution of anything.
+struct SkinnedStartSettings {
+    double share = 0.0;    ///< of the scenes with a body, 0 to 1
+    double at_rest = 0.5;  ///< of these start with a garment that does not move, 0 to 1; the others
+                           ///< with one that moves like the skin
+    double noise = 3e-3;   ///< of the start (m), 0 to 0.02
+
+    /// @throws ArgumentError if a value is out of its range
+    void check() const;
+};
+
+/// How much the vertices of a garment (|V| x 3, m, on the body's rest pose) follow each joint: the
+/// mean of the skin's weights around the nearest point of the skin.
+SkinWeights weights_from_skin(const Points& garment, const Body& body);
+
+/// The garment's rest pose carried into the body's pose at a time (s), by linear blend skinning.
+Points pose_garment(const Garment& garment, const SkinWeights& weights, const AnimatedBody& body,
+                    double time);
+
+/// The garment posed with the body at a time (s), with noise, and pushed out of the body.
+/// @param dt  of the velocity (s)
+ClothState skinned_start(const Garment& garment, const AnimatedBody& body,
+                         const SkinnedStartSettings& settings, double time, double dt,
+                         SceneRandom& random);
+
+}  // namespace cloth

@@ -1,0 +1,137 @@
+#include "gnn/train/rollout_validation.h"
+
+#include <gtest/gtest.h>
+#include <torch/torch.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "data/core/errors.h"
+#include "gnn/train/network.h"
+
+namespace cloth {
+namespace {
+
+ModelConfig tiny_model() {
+    ModelConfig config = ModelConfig::variant_named("fast");
+    config.width = 16;
+    config.steps = 2;
+    return config;
+}
+
+SceneSettings sheets_only() {
+    SceneSettings scenes;
+    scenes.tshirt_share = 0.0;
+    scenes.sheet_sizes = {60};
+    return scenes;
+}
+
+/// Random weights; `boost` scales what the decoder gives.
+Weights random_weights(float boost) {
+    Network network(tiny_model(), torch::kCPU, 1);
+    Weights weights = network.export_weights();
+    for (float& value : weights.tensors.at("decoder.output.weight").data) value *= boost;
+    for (float& value : weights.tensors.at("decoder.output.bias").data) value *= boost;
+    return weights;
+}
+
+class Rollouts : public testing::Test {
+ protected:
+    Rollouts() {
+        m_settings.sheet_vertices = 60;
+        m_settings.frames = 8;
+        m_settings.iterations = {0, 30};
+        std::filesystem::remove_all(m_folder);
+    }
+    std::vector<RolloutResult> measure(const Weights& weights) const {
+        return *RolloutValidation(m_factory, m_settings, m_folder).measure(weights, m_go);
+    }
+
+    const SceneFactory m_factory{tiny_model(), sheets_only(), 1};
+    const std::string m_folder = testing::TempDir() + "rollout_validation_test";
+    const std::atomic<bool> m_go{false}, m_stop{true};
+    RolloutSettings m_settings;
+};
+
+TEST_F(Rollouts, IterationsAfterTheNetworkComeNearToTheReference) {
+    const std::vector<RolloutResult> results = measure(random_weights(1.0f));
+    ASSERT_EQ(results.size(), 4u);
+    EXPECT_EQ(results[0].scene, "sheet-hanging");
+    EXPECT_EQ(results[2].scene, "sheet-sphere");
+    for (const size_t scene : {0u, 2u}) {
+        const RolloutResult &alone = results[scene], &refined = results[scene + 1];
+        EXPECT_EQ(alone.iterations, 0);
+        EXPECT_EQ(refined.iterations, 30);
+        EXPECT_TRUE(refined.is_sheet);
+        EXPECT_EQ(refined.held, 8);
+        EXPECT_EQ(refined.failure, "");
+        EXPECT_LT(refined.distance, 1e-3);
+        EXPECT_GT(alone.distance, 2.0 * refined.distance);
+        EXPECT_GT(refined.stretch, 0.99);
+        EXPECT_LT(refined.penetration, 5e-3);
+    }
+}
+
+TEST_F(Rollouts, TellWhenANetworkFails) {
+    for (const RolloutResult& result : measure(random_weights(1e4f))) {
+        if (result.iterations > 0) continue;
+        EXPECT_LT(result.held, 8);
+        EXPECT_TRUE(result.failure == "torn" || result.failure == "lost") << result.failure;
+        EXPECT_GT(result.distance, RolloutResult::lost_distance * (8 - result.held) / 8.0 - 1e-9);
+    }
+}
+
+TEST_F(Rollouts, KeepTheirReferences) {
+    const std::vector<RolloutResult> first = measure(random_weights(1.0f));
+    size_t files = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(m_folder)) {
+        EXPECT_EQ(entry.path().extension(), ".pt");
+        ++files;
+        std::filesystem::last_write_time(entry.path(), std::filesystem::file_time_type());
+    }
+    EXPECT_EQ(files, 2u);
+    const std::vector<RolloutResult> second = measure(random_weights(1.0f));
+    for (size_t k = 0; k < first.size(); ++k) EXPECT_EQ(first[k].distance, second[k].distance);
+    for (const auto& entry : std::filesystem::directory_iterator(m_folder)) {
+        EXPECT_EQ(std::filesystem::last_write_time(entry.path()), std::filesystem::file_time_type())
+            << "was not computed again";
+        std::filesystem::resize_file(entry.path(), 100);
+    }
+    EXPECT_EQ(measure(random_weights(1.0f))[0].distance, first[0].distance)
+        << "a damaged file is made again";
+}
+
+TEST_F(Rollouts, StopWhenTold) {
+    RolloutValidation validation(m_factory, m_settings, m_folder);
+    EXPECT_FALSE(validation.measure(random_weights(1.0f), m_stop));
+    EXPECT_FALSE(std::filesystem::exists(m_folder)) << "no half references";
+    EXPECT_TRUE(validation.measure(random_weights(1.0f), m_go));
+    EXPECT_FALSE(validation.measure(random_weights(1.0f), m_stop));
+}
+
+TEST_F(Rollouts, SummariseEachNumberOfIterations) {
+    RolloutResult a, b, shirt;
+    a.is_sheet = b.is_sheet = true;
+    a.held = 10;
+    b.held = 20;
+    a.distance = 0.01;
+    b.distance = 0.03;
+    shirt.held = 90;
+    shirt.iterations = 3;
+    const std::vector<RolloutResult> results = {a, b, shirt};
+    EXPECT_DOUBLE_EQ(summarise(results, true, 0).held, 15.0);
+    EXPECT_DOUBLE_EQ(summarise(results, true, 0).distance_mm, 20.0);
+    EXPECT_DOUBLE_EQ(summarise(results, false, 3).held, 90.0);
+    EXPECT_TRUE(std::isnan(summarise(results, false, 0).held));
+}
+
+TEST_F(Rollouts, RefuseSettingsOutOfRange) {
+    m_settings.frames = 0;
+    EXPECT_THROW(RolloutValidation(m_factory, m_settings, m_folder), ArgumentError);
+    m_settings.frames = 8;
+    m_settings.iterations = {101};
+    EXPECT_THROW(RolloutValidation(m_factory, m_settings, m_folder), ArgumentError);
+}
+
+}  // namespace
+}  // namespace cloth
