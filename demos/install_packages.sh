@@ -10,7 +10,7 @@ packages=(
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libcgal-dev libsuitesparse-dev nlohmann-json3-dev
-  libgtest-dev libbenchmark-dev
+  libgtest-dev libbenchmark-dev libcli11-dev
 )
 if [ "${CLOTH_WITH_TORCH:-1}" != 0 ]; then
   # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
