@@ -100,10 +100,11 @@ cloth::Garment load_garment(const Options& options) {
         options.fabric == "cotton" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
     cloth::Garment garment("garment", welded.mesh, fabric,
                            vertices_between(welded.mesh.vertices, options.pin));
-    std::printf("garment    %s: %d vertices (%d welded), edges of %.0f mm, %.0f g, %d pinned\n",
-                options.garment.c_str(), static_cast<int>(garment.vertex_count()), welded.merged,
-                1e3 * garment.mean_edge_length(), 1e3 * garment.masses().sum(),
-                static_cast<int>(garment.pins().size()));
+    std::printf(
+        "garment    %s: %d vertices (%d near ones joined), edges of %.0f mm, %.0f g, %d pinned\n",
+        options.garment.c_str(), static_cast<int>(garment.vertex_count()), welded.merged,
+        1e3 * garment.mean_edge_length(), 1e3 * garment.masses().sum(),
+        static_cast<int>(garment.pins().size()));
     return garment;
 }
 
@@ -228,8 +229,10 @@ int read_options(int argc, char** argv, Options& options) {
     app.add_option("--clearance", options.clearance, "from skin to cloth at the start (m)");
     app.add_option("--pin", options.pin, "lowest and highest vertex that rides on the skin (m)")
         ->expected(2);
-    app.add_option("--fabric", options.fabric)->check(CLI::IsMember({"soft", "cotton"}));
-    app.add_option("--solver", options.solver)->check(CLI::IsMember({"small", "quasi-newton"}));
+    app.add_option("--fabric", options.fabric, "soft cotton, or cotton as measured")
+        ->check(CLI::IsMember({"soft", "cotton"}));
+    app.add_option("--solver", options.solver, "with or without a network")
+        ->check(CLI::IsMember({"small", "quasi-newton"}));
     app.add_option("--settle", options.settle, "the first pose is held for so long (s)");
     app.add_option("--seconds", options.seconds, "length of the run; the animation's if not given");
     app.add_option("--out", options.out, "folder for garment.obj and character.obj at the end")
@@ -239,6 +242,8 @@ int read_options(int argc, char** argv, Options& options) {
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     }
+    cloth::check_range("--weld", options.weld, 0.0, 0.01);
+    cloth::check_range("--clearance", options.clearance, 1e-3, 0.05);
     cloth::check_range("--garment-scale", options.garment_scale, 1e-6, 1e6);
     cloth::check_range("--settle", options.settle, 0.0, 60.0);
     cloth::check_range("--seconds", options.seconds, 0.0, 3600.0);
