@@ -10,6 +10,7 @@
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
 #include "gnn/model/learned_cloth.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
 
 namespace {
@@ -92,4 +93,33 @@ TEST_F(GuideSnippets, SelfContact) {
     solver.attach(layers, both.garment, factory);
     EXPECT_EQ(both.first_vertex[1], shirt.vertex_count());
     EXPECT_EQ(layers->m_nodes.size(), 2 * shirt.vertex_count());
+}
+
+TEST_F(GuideSnippets, Solvers) {
+    const auto weights = std::make_shared<const cloth::EngineWeights>(
+        cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
+    const auto small = [&](const cloth::Garment& garment) {
+        return cloth::make_learned_cloth(garment, weights);
+    };
+    const auto physics = [](const cloth::Garment& garment) {
+        return cloth::make_physics_cloth(garment);  // quasi-newton
+    };
+    const auto bdf2 = [](const cloth::Garment& garment) {  // quasi-newton-bdf2
+        cloth::QuasiNewtonSettings settings = cloth::QuasiNewtonSettings::controlled();
+        settings.potential.integrator = cloth::Integrator::bdf2;
+        return cloth::make_physics_cloth(garment, settings);
+    };
+    const auto xpbd = [](const cloth::Garment& garment) {  // xpbd-40
+        cloth::XpbdSettings settings;
+        settings.substeps = 40;
+        return std::make_unique<cloth::XpbdStepper>(garment, settings);
+    };
+    // Learned steppers are named after the variant of their network.
+    const std::pair<cloth::StepperFactory, const char*> solvers[] = {
+        {small, "fast"}, {physics, "quasi-newton"}, {bdf2, "quasi-newton-bdf2"}, {xpbd, "xpbd-40"}};
+    for (const auto& [factory, name] : solvers) {
+        solver.attach(body, cloth::Fabric::soft_cotton(), factory);
+        EXPECT_EQ(solver.stepperOf(body)->name(), name);
+        expect_stepped();
+    }
 }
