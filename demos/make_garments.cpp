@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "data/authoring/sheet.h"
 #include "data/authoring/tshirt.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
@@ -27,9 +28,25 @@ static void make_tshirts(const std::string& folder) {
     }
 }
 
+/// A cape behind the shoulders of the person of X/BCN_Epileptic.X: a sheet that hangs down
+/// and widens from 0.2 m at the neck to 0.6 m.
+static void make_cape(const std::string& folder) {
+    const TriMesh sheet = make_sheet(0.4, 0.85, 700);
+    TriMesh cape = sheet;
+    const VectorX width = 1.0 + sheet.vertices.col(2).array() / 0.85;
+    cape.vertices.col(0) = -sheet.vertices.col(0).cwiseProduct(width);
+    cape.vertices.col(1) = -0.01 - sheet.vertices.col(2).array();
+    cape.vertices.col(2) = -0.30 - sheet.vertices.col(1).array();
+    save_obj(folder + "/cape.obj", cape);
+    std::printf("%s/cape.obj: %d vertices, %d faces\n", folder.c_str(),
+                static_cast<int>(cape.vertices.rows()), static_cast<int>(cape.faces.rows()));
+}
+
 int main(int argc, char** argv) {
     try {
-        make_tshirts(argc > 1 ? argv[1] : asset_path("garments"));
+        const std::string folder = argc > 1 ? argv[1] : asset_path("garments");
+        make_tshirts(folder);
+        make_cape(folder);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "make_garments: %s\n", error.what());
         return 1;

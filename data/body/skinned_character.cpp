@@ -48,16 +48,29 @@ Eigen::Affine3d SkinnedCharacter::local_transform(const CharacterNode& node, dou
            Eigen::Scaling(sample(track.scale_times, track.scales, time));
 }
 
-Points SkinnedCharacter::vertices(double time) const {
+/// @param local  of each node, relative to its parent
+Points SkinnedCharacter::skin(const std::vector<Eigen::Affine3d>& local) const {
     std::vector<Eigen::Affine3d> world;
-    for (const CharacterNode& node : m_rig.nodes) {
-        const Eigen::Affine3d local = local_transform(node, time);
-        world.push_back(node.parent < 0 ? local : world[node.parent] * local);
+    for (size_t n = 0; n < m_rig.nodes.size(); ++n) {
+        const int parent = m_rig.nodes[n].parent;
+        world.push_back(parent < 0 ? local[n] : world[parent] * local[n]);
     }
     std::vector<SkinMatrix> matrices;
     for (const CharacterJoint& joint : m_rig.joints)
         matrices.emplace_back(m_scale * (world[joint.node] * joint.offset).matrix().topRows<3>());
     return skin_points(m_rig.rest, m_rig.weights, matrices);
+}
+
+Points SkinnedCharacter::vertices(double time) const {
+    std::vector<Eigen::Affine3d> local;
+    for (const CharacterNode& node : m_rig.nodes) local.push_back(local_transform(node, time));
+    return skin(local);
+}
+
+Points SkinnedCharacter::rest_vertices() const {
+    std::vector<Eigen::Affine3d> local;
+    for (const CharacterNode& node : m_rig.nodes) local.push_back(node.rest);
+    return skin(local);
 }
 
 }  // namespace cloth

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data/body/character_rig.h"
 #include "data/core/moving_surface.h"
@@ -27,6 +28,9 @@ class SkinnedCharacter : public MovingSurface {
 
     std::shared_ptr<const Faces> faces() const override { return m_faces; }
     Points vertices(double time) const override;
+    /// The skin as the file places it (|V| x 3, m), before any animation: the pose that garments
+    /// are modelled on.
+    Points rest_vertices() const;
     double duration() const override { return m_rig.duration; }
 
     /// Skeleton, skin weights and animation as the file has them.
@@ -34,6 +38,7 @@ class SkinnedCharacter : public MovingSurface {
 
  private:
     Eigen::Affine3d local_transform(const CharacterNode& node, double time) const;
+    Points skin(const std::vector<Eigen::Affine3d>& local) const;
 
     CharacterRig m_rig;
     std::shared_ptr<const Faces> m_faces;

@@ -15,7 +15,7 @@ namespace cloth {
 ///     Engine shirt(weights), trousers(weights);
 ///
 /// Precision::bfloat16 halves them, and the time where the processor has AVX512-BF16. What that
-/// does to an acceleration is a matter of the weights: measure it (README, "The engine").
+/// does to an acceleration is a matter of the weights; gnn/model/RESULTS.md has the shipped ones.
 class EngineWeights {
  public:
     /// Copies what it needs. @throws ArgumentError if the width is no multiple of 16 or there are

@@ -83,6 +83,20 @@ TEST(SkinnedCharacter, ARealCharacterStaysWhole) {
     EXPECT_EQ(obstacle.x1, bison.vertices(0.5));
 }
 
+TEST(SkinnedCharacter, TheRestPoseIsThatOfTheFileNotOfTheAnimation) {
+    const SkinnedCharacter character(model_path(strip));
+    const Points rest = character.rest_vertices();
+    for (const Vec3& corner : {Vec3(-0.5, 2, 0), Vec3(0.5, 2, 0), Vec3(0.5, 0, 0)})
+        EXPECT_LT(distance_to_nearest(rest, corner), 1e-6);
+    CharacterSettings settings;
+    settings.animation = "Wuson_Walk";
+    const SkinnedCharacter bison(model_path("X/Testwuson.X"), settings);
+    settings.animation = "Wuson_Bind";
+    const SkinnedCharacter bound(model_path("X/Testwuson.X"), settings);
+    EXPECT_LT((bison.rest_vertices() - bound.vertices(0.0)).rowwise().norm().maxCoeff(), 1e-3);
+    EXPECT_GT((bison.rest_vertices() - bison.vertices(0.0)).rowwise().norm().maxCoeff(), 0.1);
+}
+
 TEST(SkinnedCharacter, ScaleTurnsFileUnitsIntoMetres) {
     CharacterSettings settings;
     settings.scale = 0.01;

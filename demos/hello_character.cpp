@@ -1,0 +1,282 @@
+// Your garment on your character: any rigged character file, any garment mesh file, a Bullet world.
+//
+//     hello_character --character dancer.glb --garment skirt.obj --pin 0.95 1.10
+//
+// Without options a cape hangs from the shoulders of a person of Debian's assimp-testmodels.
+// data/README.md explains every step.
+#include <BulletSoftBody/btSoftBodyRigidBodyCollisionConfiguration.h>
+#include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
+#include <btBulletDynamicsCommon.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "bullet_ext/btGnnSoftBodySolver.h"
+#include "bullet_ext/garmentSoftBody.h"
+#include "data/body/garment_fit.h"
+#include "data/body/skin_binding.h"
+#include "data/body/skinned_character.h"
+#include "data/core/check_range.h"
+#include "data/core/paths.h"
+#include "data/core/surface_distance.h"
+#include "data/core/weld.h"
+#include "data/files/mesh_io.h"
+#include "gnn/model/make_cloth.h"
+
+namespace {
+
+struct Options {
+    std::string character, garment, garment_mesh, fabric = "soft", solver = "small", out;
+    cloth::CharacterSettings skin;
+    double garment_scale = 1.0, weld = 1e-4, clearance = 4.5e-3, settle = 0.5, seconds = 0.0;
+    std::vector<double> pin;  // lowest and highest pinned vertex (m), or empty
+};
+
+/// What is printed at the end.
+struct Outcome {
+    double stretch99 = 1.0, stretch = 1.0;  // length over rest length of the garment's edges
+    double inside = 0.0, deepest = 0.0;     // (m): at the end, at any time
+    double away = 0.0;                      // from the skin at the end (m)
+    long failed = 0;
+};
+
+/// A character's skin as one surface: parts and texture seams that the file splits are joined.
+class Skin {
+ public:
+    Skin(const std::string& file, const cloth::CharacterSettings& settings, double tolerance)
+        : m_character(file, settings),
+          m_rest(cloth::weld_mesh({m_character.rest_vertices(), *m_character.faces()}, tolerance)),
+          m_faces(std::make_shared<const cloth::Faces>(m_rest.mesh.faces)) {}
+
+    const cloth::TriMesh& rest() const { return m_rest.mesh; }
+    std::shared_ptr<const cloth::Faces> faces() const { return m_faces; }
+    double duration() const { return m_character.duration(); }
+    cloth::Points at(double time) const {
+        return m_character.vertices(time)(m_rest.kept, Eigen::all);
+    }
+    double height() const {
+        return rest().vertices.col(1).maxCoeff() - rest().vertices.col(1).minCoeff();
+    }
+
+ private:
+    cloth::SkinnedCharacter m_character;
+    cloth::WeldedMesh m_rest;
+    std::shared_ptr<const cloth::Faces> m_faces;
+};
+
+Skin load_skin(const Options& options) {
+    Skin skin(options.character, options.skin, options.weld);
+    if (skin.height() < 0.1 || skin.height() > 10.0)
+        throw cloth::ArgumentError(options.character,
+                                   "it is " + std::to_string(skin.height()) + " m high",
+                                   "give --character-scale, such as 0.01 for centimetres");
+    std::printf("character  %s: %d vertices, %.2f m high, animation of %.2f s\n",
+                options.character.c_str(), static_cast<int>(skin.rest().vertices.rows()),
+                skin.height(), skin.duration());
+    return skin;
+}
+
+std::vector<int> vertices_between(const cloth::Points& x, const std::vector<double>& heights) {
+    std::vector<int> found;
+    for (int i = 0; i < x.rows() && !heights.empty(); ++i)
+        if (x(i, 1) >= heights[0] && x(i, 1) <= heights[1]) found.push_back(i);
+    if (found.empty() && !heights.empty())
+        throw cloth::ArgumentError("--pin",
+                                   "the garment, from " + std::to_string(x.col(1).minCoeff()) +
+                                       " to " + std::to_string(x.col(1).maxCoeff()) +
+                                       " m, has no vertex there",
+                                   "give the lowest and highest height in metres, after scaling");
+    return found;
+}
+
+cloth::Garment load_garment(const Options& options) {
+    cloth::TriMesh mesh = cloth::load_mesh(options.garment, options.garment_mesh);
+    mesh.vertices *= options.garment_scale;
+    const cloth::WeldedMesh welded = cloth::weld_mesh(mesh, options.weld);
+    const cloth::Fabric fabric =
+        options.fabric == "cotton" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
+    cloth::Garment garment("garment", welded.mesh, fabric,
+                           vertices_between(welded.mesh.vertices, options.pin));
+    std::printf(
+        "garment    %s: %d vertices (%d near ones joined), edges of %.0f mm, %.0f g, %d pinned\n",
+        options.garment.c_str(), static_cast<int>(garment.vertex_count()), welded.merged,
+        1e3 * garment.mean_edge_length(), 1e3 * garment.masses().sum(),
+        static_cast<int>(garment.pins().size()));
+    return garment;
+}
+
+/// The garment on the first pose of the animation, clear of the skin.
+cloth::ClothState dress(const cloth::Garment& garment, const Skin& skin, double clearance) {
+    const double away =
+        cloth::smallest_clearance(garment.rest(), cloth::SurfaceDistance(skin.rest()));
+    if (away > 0.3)
+        throw cloth::ArgumentError("garment", "it is " + std::to_string(away) + " m from the skin",
+                                   "check --garment-scale, and that garment and character have the "
+                                   "same origin and axes");
+    cloth::GarmentFitSettings settings;
+    settings.clearance = clearance;
+    cloth::ClothState state = cloth::ClothState::at_rest(garment);
+    state.x = cloth::fit_garment(garment.rest(), skin.rest(), skin.at(0.0), settings);
+    std::printf("fit        as modelled %.1f mm from the skin, now %.1f mm or more\n", 1e3 * away,
+                1e3 * clearance);
+    return state;
+}
+
+btGnnSoftBodySolver make_solver(const std::string& name) {
+    cloth::ClothSettings settings;
+    if (name != "quasi-newton")
+        settings.weights = std::make_shared<const cloth::EngineWeights>(
+            cloth::Weights::load(cloth::asset_path("weights/" + name + ".safetensors")));
+    return btGnnSoftBodySolver([settings](const cloth::Garment& garment) {
+        return cloth::make_cloth(garment, settings);
+    });
+}
+
+void measure(const cloth::Garment& garment, const btSoftBody& body, const cloth::TriMesh& skin,
+             Outcome& outcome) {
+    cloth::ClothState end = cloth::ClothState::at_rest(garment);
+    cloth::storeState(body, end);
+    outcome.away =
+        cloth::smallest_clearance({end.x, garment.rest().faces}, cloth::SurfaceDistance(skin));
+    std::vector<double> ratios;
+    for (const auto& [a, b] : garment.edges())
+        ratios.push_back((end.x.row(a) - end.x.row(b)).norm() /
+                         (garment.rest().vertices.row(a) - garment.rest().vertices.row(b)).norm());
+    std::sort(ratios.begin(), ratios.end());
+    outcome.stretch99 = ratios[ratios.size() * 99 / 100];
+    outcome.stretch = ratios.back();
+}
+
+/// What can be looked at in a modeller.
+void save_end(const std::string& folder, const cloth::Garment& garment, const btSoftBody& body,
+              const cloth::TriMesh& skin) {
+    cloth::ClothState end = cloth::ClothState::at_rest(garment);
+    cloth::storeState(body, end);
+    cloth::save_obj(folder + "/garment.obj", {end.x, garment.rest().faces});
+    cloth::save_obj(folder + "/character.obj", skin);
+}
+
+Outcome run(const Options& options, const Skin& skin, const cloth::Garment& garment,
+            const cloth::ClothState& start) {
+    btGnnSoftBodySolver solver = make_solver(options.solver);
+    btSoftBodyRigidBodyCollisionConfiguration config;
+    btCollisionDispatcher dispatcher(&config);
+    btDbvtBroadphase broadphase;
+    btSequentialImpulseConstraintSolver rigidSolver;
+    btSoftRigidDynamicsWorld world(&dispatcher, &broadphase, &rigidSolver, &config, &solver);
+    world.getWorldInfo().m_gravity = {0, -9.81f, 0};
+    world.getWorldInfo().m_sparsesdf.Initialize();
+
+    // The character's skin replaces the shape of this object before every step.
+    btSphereShape anywhere(1.0f);
+    btRigidBody person(0, nullptr, &anywhere);
+    person.setFriction(0.5f);
+    world.addRigidBody(&person);
+    btSoftBody* cloth = cloth::createGarmentSoftBody(world.getWorldInfo(), garment, start);
+    world.addSoftBody(cloth);
+    solver.attach(cloth, garment);
+
+    // Pinned vertices ride on the skin.
+    const std::vector<int>& pins = garment.pins();
+    const cloth::SkinBinding band({skin.at(0.0), *skin.faces()}, start.x(pins, Eigen::all));
+
+    constexpr double dt = 1.0 / 30.0;
+    const double end = options.settle + (options.seconds > 0 ? options.seconds : skin.duration());
+    Outcome outcome;
+    for (int frame = 0; frame * dt < end; ++frame) {
+        // The first pose is held for a while, so that the cloth comes to hang.
+        const double now = std::max(0.0, frame * dt - options.settle);
+        const double next = std::max(0.0, (frame + 1) * dt - options.settle);
+        solver.setAnimatedObstacle(&person, skin.faces(), skin.at(now), skin.at(next), dt);
+        const cloth::Points places = band.positions(skin.at(next));
+        for (size_t p = 0; p < pins.size(); ++p) {
+            const auto row = static_cast<Eigen::Index>(p);
+            cloth->m_nodes[pins[p]].m_x.setValue(static_cast<float>(places(row, 0)),
+                                                 static_cast<float>(places(row, 1)),
+                                                 static_cast<float>(places(row, 2)));
+        }
+        world.stepSimulation(static_cast<btScalar>(dt), 0);
+        outcome.inside = solver.status().maxPenetration;
+        outcome.deepest = std::max(outcome.deepest, outcome.inside);
+    }
+    outcome.failed = solver.status().failedSteps + (solver.status().clothBodies == 1 ? 0 : 1);
+    const cloth::TriMesh last{skin.at(end - options.settle), *skin.faces()};
+    measure(garment, *cloth, last, outcome);
+    for (const btGnnSolverMessage& message : solver.status().messages)
+        std::printf("%s\n", message.text.c_str());
+    if (!options.out.empty()) save_end(options.out, garment, *cloth, last);
+    world.removeSoftBody(cloth);
+    delete cloth;
+    world.removeRigidBody(&person);
+    return outcome;
+}
+
+int read_options(int argc, char** argv, Options& options) {
+    CLI::App app("Your garment on your character in a Bullet world.", "hello_character");
+    app.add_option("--character", options.character, "rigged and animated file (.glb, .fbx, ...)");
+    app.add_option("--skin", options.skin.mesh_name, "its mesh that is skin; all if not given");
+    app.add_option("--animation", options.skin.animation, "its animation; the first if not given");
+    app.add_option("--character-scale", options.skin.scale, "metres per unit of the file");
+    app.add_option("--garment", options.garment,
+                   "mesh modelled on the character (.obj, .ply, ...)");
+    app.add_option("--garment-mesh", options.garment_mesh, "its mesh; all if not given");
+    app.add_option("--garment-scale", options.garment_scale, "metres per unit of the file");
+    app.add_option("--weld", options.weld, "vertices as near as this become one (m)");
+    app.add_option("--clearance", options.clearance, "from skin to cloth at the start (m)");
+    app.add_option("--pin", options.pin, "lowest and highest vertex that rides on the skin (m)")
+        ->expected(2);
+    app.add_option("--fabric", options.fabric, "soft cotton, or cotton as measured")
+        ->check(CLI::IsMember({"soft", "cotton"}));
+    app.add_option("--solver", options.solver, "with or without a network")
+        ->check(CLI::IsMember({"small", "quasi-newton"}));
+    app.add_option("--settle", options.settle, "the first pose is held for so long (s)");
+    app.add_option("--seconds", options.seconds, "length of the run; the animation's if not given");
+    app.add_option("--out", options.out, "folder for garment.obj and character.obj at the end")
+        ->check(CLI::ExistingDirectory);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
+    cloth::check_range("--weld", options.weld, 0.0, 0.01);
+    cloth::check_range("--clearance", options.clearance, 1e-3, 0.05);
+    cloth::check_range("--garment-scale", options.garment_scale, 1e-6, 1e6);
+    cloth::check_range("--settle", options.settle, 0.0, 60.0);
+    cloth::check_range("--seconds", options.seconds, 0.0, 3600.0);
+    if (options.character.empty() != options.garment.empty())
+        throw cloth::ArgumentError("options", "only one of --character and --garment is given",
+                                   "give both: the garment has to be modelled on the character");
+    if (options.character.empty()) {
+        options.character = cloth::model_path("X/BCN_Epileptic.X");
+        options.garment = cloth::asset_path("garments/cape.obj");
+        if (options.pin.empty()) options.pin = {0.39, 1.0};  // the upper seam
+    }
+    return -1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+    Options options;
+    const int done = read_options(argc, argv, options);
+    if (done >= 0) return done;
+    const Skin skin = load_skin(options);
+    const cloth::Garment garment = load_garment(options);
+    const cloth::ClothState start = dress(garment, skin, options.clearance);
+    const Outcome outcome = run(options, skin, garment, start);
+    std::printf("at the end stretched to %.2f (99 %% of the edges: %.2f) of the rest length\n",
+                outcome.stretch, outcome.stretch99);
+    std::printf("deepest point inside the character: %.2f mm, at any time %.2f mm\n",
+                1e3 * outcome.inside, 1e3 * outcome.deepest);
+    if (outcome.failed > 0) std::printf("%ld steps failed\n", outcome.failed);
+    const bool lost = outcome.failed > 0 || outcome.away > 0.05 || outcome.stretch99 > 2.0;
+    std::printf("%s\n", lost ? "the garment is lost: it failed, fell off or was torn"
+                             : "the garment is worn");
+    return lost ? 1 : 0;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "hello_character: %s\n", error.what());
+    return 2;
+}

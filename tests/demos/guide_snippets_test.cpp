@@ -1,0 +1,128 @@
+// The code of the guides that is in no demo: docs_test compares it with the pages, word for word.
+#include <BulletSoftBody/btSoftBodyHelpers.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "bullet_ext/btGnnSoftBodySolver.h"
+#include "bullet_ext/garmentSoftBody.h"
+#include "data/core/garment_pieces.h"
+#include "data/core/paths.h"
+#include "data/files/garment_assets.h"
+#include "gnn/model/make_cloth.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
+#include "tests/bullet_ext/bullet_world.h"
+
+namespace {
+
+/// A soft body, an object for a character and a moving strip of skin.
+class GuideSnippets : public testing::Test {
+ protected:
+    GuideSnippets() : solver(quasi_newton()), world(&solver) {
+        body = world.add(btSoftBodyHelpers::CreatePatch(world.info(), {-0.4f, 1, -0.4f},
+                                                        {0.4f, 1, -0.4f}, {-0.4f, 1, 0.4f},
+                                                        {0.4f, 1, 0.4f}, 9, 9, 1 + 2, true));
+    }
+
+    static cloth::StepperFactory quasi_newton() {
+        return [](const cloth::Garment& garment) { return cloth::make_cloth(garment); };
+    }
+
+    void expect_stepped() {
+        world->stepSimulation(1.0f / 30, 0);
+        EXPECT_EQ(solver.status().clothBodies, 1);
+        EXPECT_EQ(solver.status().failedSteps, 0);
+    }
+
+    btGnnSoftBodySolver solver;
+    cloth::test::World world;
+    btSoftBody* body = nullptr;
+};
+
+}  // namespace
+
+TEST_F(GuideSnippets, Limbs) {
+    constexpr double dt = 1.0 / 30.0;
+    auto sphere = std::make_unique<btSphereShape>(1.0f);
+    btRigidBody person(0, nullptr, sphere.get());
+    world->addRigidBody(&person);
+    const cloth::TriMesh shirt = cloth::load_garment_mesh("tshirt_1000");
+    const auto faces = std::make_shared<const cloth::Faces>(shirt.faces);
+    const cloth::Points now = shirt.vertices, next = now.array() + 0.001;
+    // One number from 0 to 31 for each face, such as that of the bone that moves it.
+    auto limbs = std::make_shared<const std::vector<std::uint8_t>>(faces->rows(), std::uint8_t{0});
+    solver.setAnimatedObstacle(&person, faces, now, next, dt, limbs);
+    expect_stepped();
+    solver.removeAnimatedObstacle(&person);
+    world->removeRigidBody(&person);
+}
+
+TEST_F(GuideSnippets, Fabric) {
+    // Throws an error that says what is wrong with the body; without attach(), status() says it.
+    solver.attach(body, cloth::Fabric::real_cotton());
+    EXPECT_EQ(solver.garmentOf(body)->fabric().mu, cloth::Fabric::real_cotton().mu);
+    expect_stepped();
+}
+
+TEST_F(GuideSnippets, Status) {
+    expect_stepped();
+    const btGnnSolverStatus& status = solver.status();
+    for (const btGnnSolverMessage& message : status.messages)
+        std::printf("%s (%d times)\n", message.text.c_str(), message.count);
+    std::printf("%d bodies, %ld steps, %ld failed, %.1f mm inside, %.1f ms\n", status.clothBodies,
+                status.steps, status.failedSteps, 1e3 * status.maxPenetration,
+                status.times.total());
+    EXPECT_TRUE(status.messages.empty());
+}
+
+TEST_F(GuideSnippets, SelfContact) {
+    const auto weights = std::make_shared<const cloth::EngineWeights>(
+        cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
+    cloth::ClothSettings settings;
+    settings.weights = weights;
+    settings.step.potential.self_contact.thickness = 4e-3;  // m
+    settings.step.potential.integrator = cloth::Integrator::bdf2;
+    const auto factory = [&](const cloth::Garment& garment) {
+        return cloth::make_cloth(garment, settings);
+    };
+    // A shirt over a shirt: one garment of two pieces, which feel each other.
+    const cloth::Garment shirt = cloth::load_garment("tshirt_1000");
+    const cloth::MergedGarments both = cloth::merge_garments("both", {shirt, shirt});
+    btSoftBody* layers = cloth::createGarmentSoftBody(world.info(), both.garment);
+    world.remove(body);
+    world.add(layers);
+    solver.attach(layers, both.garment, factory);
+    EXPECT_EQ(both.first_vertex[1], shirt.vertex_count());
+    EXPECT_EQ(layers->m_nodes.size(), 2 * shirt.vertex_count());
+}
+
+TEST_F(GuideSnippets, Solvers) {
+    const auto weights = std::make_shared<const cloth::EngineWeights>(
+        cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
+    const auto small = [&](const cloth::Garment& garment) {
+        cloth::ClothSettings settings;
+        settings.weights = weights;
+        return cloth::make_cloth(garment, settings);
+    };
+    const auto physics = [](const cloth::Garment& garment) {
+        return cloth::make_cloth(garment);  // quasi-newton
+    };
+    const auto bdf2 = [](const cloth::Garment& garment) {  // quasi-newton-bdf2
+        cloth::ClothSettings settings;
+        settings.step.potential.integrator = cloth::Integrator::bdf2;
+        return cloth::make_cloth(garment, settings);
+    };
+    const auto xpbd = [](const cloth::Garment& garment) {  // xpbd-40
+        cloth::XpbdSettings settings;
+        settings.substeps = 40;
+        return std::make_unique<cloth::XpbdStepper>(garment, settings);
+    };
+    // Learned steppers are named after the variant of their network.
+    const std::pair<cloth::StepperFactory, const char*> solvers[] = {
+        {small, "fast"}, {physics, "quasi-newton"}, {bdf2, "quasi-newton-bdf2"}, {xpbd, "xpbd-40"}};
+    for (const auto& [factory, name] : solvers) {
+        solver.attach(body, cloth::Fabric::soft_cotton(), factory);
+        EXPECT_EQ(solver.stepperOf(body)->name(), name);
+        expect_stepped();
+    }
+}
