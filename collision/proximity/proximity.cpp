@@ -10,6 +10,7 @@
 #include "collision/geometry/primitives.h"
 #include "collision/geometry/triangle.h"
 #include "collision/proximity/mesh_surface.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -229,9 +230,8 @@ struct Proximity::Impl {
 };
 
 Proximity::Proximity(ProximitySettings settings) : m_impl(std::make_unique<Impl>()) {
-    if (!(settings.radius > 0.0) || !std::isfinite(settings.radius))
-        throw ArgumentError("ProximitySettings::radius", "it is not positive and finite",
-                            "give a length of 0.01 to 0.5 m");
+    check_range("ProximitySettings.radius", settings.radius, 0.01, 2.0);
+    check_range("ProximitySettings.threads", settings.threads, 0, 1024);
     m_impl->settings = settings;
 }
 

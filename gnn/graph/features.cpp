@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/core/check_range.h"
+
 namespace cloth {
 
 namespace {
@@ -56,6 +58,7 @@ FeatureBuilder::FeatureBuilder(const Garment& garment, const ClothGraph& graph,
       m_graph(&graph),
       m_settings(settings),
       m_material(scaled_material(garment.fabric())) {
+    check_range("FeatureSettings.world_radius", settings.world_radius, 1e-3, 1.0);
 }
 
 void FeatureBuilder::build(const ClothState& state, const Boundary& boundary,

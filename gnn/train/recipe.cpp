@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -23,6 +24,18 @@ Recipe Recipe::named(const std::string& name, int width) {
     recipe.heal_first = recipe.heal_last = 1.0;
     recipe.contact_first = 5e3;
     return recipe;
+}
+
+void Recipe::check() const {
+    check_range("Recipe.base_rate", base_rate, 1e-8, 1.0);
+    check_range("Recipe.noise", noise, 0.0, 0.1);
+    check_range("Recipe.clip_norm", clip_norm, 0.0, 1e6);
+    check_range("Recipe.max_rollout", max_rollout, 1, 100);
+    check_range("Recipe.heal_first", heal_first, 0.0, 1.0);
+    check_range("Recipe.heal_last", heal_last, 0.0, 1.0);
+    check_range("Recipe.heal_iterations", heal_iterations, 0, 1000);
+    check_range("Recipe.contact_first", contact_first, 1e3, 1e6);
+    check_range("Recipe.contact_last", contact_last, 1e3, 1e6);
 }
 
 double Recipe::learning_rate(std::int64_t iteration, double progress) const {

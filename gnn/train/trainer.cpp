@@ -10,6 +10,7 @@
 #include <limits>
 #include <utility>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -38,11 +39,25 @@ struct Trainer::Sums {
     double first_second = 0.0;
 };
 
+static void check(const TrainerSettings& s) {
+    constexpr double many = 1e12;
+    check_range("TrainerSettings.threads", s.threads, 0, 1024);
+    check_range("TrainerSettings.iterations", static_cast<double>(s.iterations), 0.0, many);
+    check_range("TrainerSettings.minutes", s.minutes, 0.0, 1e6);
+    check_range("TrainerSettings.pool", s.pool, 1, 1000);
+    check_range("TrainerSettings.report_every", s.report_every, 1, 1e9);
+    check_range("TrainerSettings.validate_every", s.validate_every, 1, 1e9);
+    check_range("TrainerSettings.save_every", s.save_every, 0.0, 1e6);
+    check_range("TrainerSettings.freeze_statistics", static_cast<double>(s.freeze_statistics), 0.0,
+                many);
+    s.model.check();
+    s.recipe.check();
+}
+
 static TrainerSettings checked(TrainerSettings settings) {
+    check(settings);
     if (settings.iterations <= 0 && settings.minutes <= 0.0)
         throw ArgumentError("training", "has no end", "give iterations or minutes");
-    if (settings.pool < 1 || settings.pool > 1000)
-        throw ArgumentError("pool", "is outside 1 to 1000", "use 40");
     if (settings.device != "cpu" && settings.device != "cuda")
         throw ArgumentError("device '" + settings.device + "'", "is not known", "use cpu or cuda");
     if (settings.device == "cuda" && !torch::cuda::is_available())

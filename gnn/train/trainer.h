@@ -21,15 +21,16 @@ struct TrainerSettings {
     SceneSettings scenes;
     ValidationSettings validation;
     std::string device = "cpu";  ///< cpu or cuda
-    int threads = 1;             ///< of LibTorch
+    int threads = 1;             ///< of LibTorch, 0 to 1024; 0: one
     std::uint64_t seed = 1;
-    std::int64_t iterations = 0;            ///< end of training; 0: as many as fit into `minutes`
-    double minutes = 0.0;                   ///< wall time of training; 0: no limit
-    int pool = 40;                          ///< scenes trained on in turn, 1 to 1000
-    int report_every = 100;                 ///< iterations per row of metrics.csv
-    int validate_every = 500;               ///< iterations
-    double save_every = 3.0;                ///< minutes between checkpoints
-    std::int64_t freeze_statistics = 1000;  ///< iterations that shape the feature statistics
+    std::int64_t iterations = 0;  ///< end of training, 0 to 1e12; 0: as many as fit into `minutes`
+    double minutes = 0.0;         ///< wall time of training, 0 to 1e6; 0: no limit
+    int pool = 40;                ///< scenes trained on in turn, 1 to 1000
+    int report_every = 100;       ///< iterations per row of metrics.csv, 1 to 1e9
+    int validate_every = 500;     ///< iterations, 1 to 1e9
+    double save_every = 3.0;      ///< minutes between checkpoints, 0 to 1e6
+    std::int64_t freeze_statistics =
+        1000;                       ///< iterations that shape the feature statistics, 0 to 1e12
     std::string out = "out/train";  ///< folder: checkpoint.pt, metrics.csv, weights.safetensors
 };
 

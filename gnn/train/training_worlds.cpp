@@ -6,6 +6,7 @@
 
 #include "data/body/animated_body.h"
 #include "data/body/body_shapes.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
@@ -41,6 +42,11 @@ struct SceneFactory::Assets {
 
 SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, std::uint64_t seed)
     : m_config(config), m_settings(std::move(settings)), m_assets(std::make_unique<Assets>()) {
+    check_range("SceneSettings.tshirt_share", m_settings.tshirt_share, 0.0, 1.0);
+    check_range("SceneSettings.shape_share", m_settings.shape_share, 0.0, 1.0);
+    check_range("SceneSettings.fabric_share", m_settings.fabric_share, 0.0, 1.0);
+    check_range("SceneSettings.max_warm_up", m_settings.max_warm_up, 0, 10000);
+    for (int size : m_settings.sheet_sizes) check_range("SceneSettings.sheet_sizes", size, 4, 1e5);
     SceneRandom random(seed);
     for (int size : m_settings.sheet_sizes)
         for (int copy = 0; copy < 2; ++copy) {

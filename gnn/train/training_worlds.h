@@ -10,14 +10,16 @@
 namespace cloth {
 
 struct SceneSettings {
-    double tshirt_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
-    double shape_share = 0.5;    ///< of T-shirt scenes with a sampled body shape, where available
-    double fabric_share = 0.6;   ///< of scenes with a sampled fabric; the others are soft cotton
-    std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices
+    double tshirt_share = 0.65;  ///< of the scenes, 0 to 1, where garments and body can be loaded
+    double shape_share =
+        0.5;  ///< of T-shirt scenes, 0 to 1, with a sampled body shape, where available
+    double fabric_share =
+        0.6;  ///< of scenes, 0 to 1, with a sampled fabric; the others are soft cotton
+    std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices, 4 to 1e5 each
     std::vector<std::string> garments = {"garments/tshirt_1000.obj", "garments/tshirt_2000.obj",
                                          "garments/tshirt.obj"};  ///< in data/assets
     std::vector<std::string> motions;  ///< names or files; empty: all training clips there are
-    int max_warm_up = 40;              ///< frames
+    int max_warm_up = 40;              ///< frames, 0 to 10000
 };
 
 /// Makes training scenes: sheets pinned in various ways among moving spheres, and T-shirts on
@@ -25,6 +27,7 @@ struct SceneSettings {
 class SceneFactory {
  public:
     /// Loads what it can of body, motions and garments; says on standard error what is missing.
+    /// @throws ArgumentError if a setting is out of range
     SceneFactory(const ModelConfig& config, SceneSettings settings, std::uint64_t seed);
     ~SceneFactory();
 

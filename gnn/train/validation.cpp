@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "data/core/check_range.h"
 #include "data/core/paths.h"
 
 namespace cloth {
@@ -26,6 +27,10 @@ static std::vector<std::string> held_out_clips() {
 
 Validation::Validation(const SceneFactory& factory, ValidationSettings settings)
     : m_settings(settings) {
+    check_range("ValidationSettings.tshirt_states", settings.tshirt_states, 0, 1000);
+    check_range("ValidationSettings.sheet_states", settings.sheet_states, 0, 1000);
+    check_range("ValidationSettings.rollout_iterations", settings.rollout_iterations, 0, 10000);
+    check_range("ValidationSettings.minimum_iterations", settings.minimum_iterations, 1, 10000);
     if (factory.has_tshirts() && settings.tshirt_states > 0) {
         const std::vector<std::string> clips = held_out_clips();
         const int each = std::max(1, settings.tshirt_states / static_cast<int>(clips.size()));

@@ -9,10 +9,10 @@
 namespace cloth {
 
 struct ValidationSettings {
-    int tshirt_states = 8;  ///< of a T-shirt on a clip that is never trained on
-    int sheet_states = 8;
-    int rollout_iterations = 12;  ///< of the solver that makes the states
-    int minimum_iterations = 80;  ///< of the solver that finds the least energy
+    int tshirt_states = 8;        ///< of a T-shirt on a clip that is never trained on, 0 to 1000
+    int sheet_states = 8;         ///< 0 to 1000
+    int rollout_iterations = 12;  ///< of the solver that makes the states, 0 to 10000
+    int minimum_iterations = 80;  ///< of the solver that finds the least energy, 1 to 10000
     size_t garment = 99;          ///< index into the factory's T-shirts, the last if out of range
 };
 
@@ -28,6 +28,7 @@ struct ValidationResult {
 /// Fixed states that are never trained on, with the least energy of each.
 class Validation {
  public:
+    /// @throws ArgumentError if a setting is out of range
     Validation(const SceneFactory& factory, ValidationSettings settings);
 
     ValidationResult measure(Network& network);

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 namespace {
@@ -17,13 +17,6 @@ constexpr int max_backtracks = 20;
 
 double dot(const Points& a, const Points& b) {
     return a.cwiseProduct(b).sum();
-}
-
-void check_range(const char* name, double value, double lowest, double highest) {
-    if (value >= lowest && value <= highest) return;
-    throw ArgumentError(std::string("QuasiNewtonSettings::") + name,
-                        std::to_string(value) + " is out of range",
-                        "choose from " + std::to_string(lowest) + " to " + std::to_string(highest));
 }
 
 /// The energies of the last iterations, and what became of them as a distance.
@@ -56,12 +49,12 @@ double shorter_step(double step, double energy, double slope, double trial_energ
 
 QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     : m_settings(settings), m_matrix(garment) {
-    check_range("iterations", settings.iterations, 0, 10000);
-    check_range("tolerance", settings.tolerance, 0.0, 1e6);
-    check_range("least_gain", settings.least_gain, 0.0, 1.0);
-    check_range("least_iterations", settings.least_iterations, 0, 10000);
-    check_range("history", settings.history, 0, 50);
-    check_range("contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
+    check_range("QuasiNewtonSettings.iterations", settings.iterations, 0, 10000);
+    check_range("QuasiNewtonSettings.tolerance", settings.tolerance, 0.0, 1e6);
+    check_range("QuasiNewtonSettings.least_gain", settings.least_gain, 0.0, 1.0);
+    check_range("QuasiNewtonSettings.least_iterations", settings.least_iterations, 0, 10000);
+    check_range("QuasiNewtonSettings.history", settings.history, 0, 50);
+    check_range("QuasiNewtonSettings.contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
     const Eigen::Index free = m_matrix.free_count();
     m_history.allocate(settings.history, free);
     for (Points* array : {&m_gradient, &m_next_gradient, &m_direction, &m_right_side, &m_gathered,
