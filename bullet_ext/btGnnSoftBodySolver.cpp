@@ -9,6 +9,7 @@
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 using cloth::ArgumentError;
@@ -71,6 +72,9 @@ btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
     if (!m_factory)
         throw ArgumentError("btGnnSoftBodySolver", "the stepper factory is empty",
                             "give a function that makes a Stepper of a Garment");
+    cloth::check_range("btGnnSolverSettings.obstacleReach", settings.obstacleReach, 0.02, 1.0);
+    cloth::check_range("btGnnSolverSettings.sleepMotion", settings.sleepMotion, 0.0, 0.05);
+    cloth::check_range("btGnnSolverSettings.maxFailedSteps", settings.maxFailedSteps, 1, 1000000);
 }
 
 btGnnSoftBodySolver::~btGnnSoftBodySolver() = default;

@@ -30,9 +30,9 @@ struct btGnnSolverSettings {
     bool useBodyDensity = false;    ///< true: the fabric's density is the body's mass per area;
                                   ///< false: the cloth moves as its fabric does, whatever it weighs
     double obstacleReach = 0.1;  ///< how far around cloth obstacles are looked for (m), 0.02 to 1
-    double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, up to
+    double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
-    int maxFailedSteps = 3;      ///< after so many failures in a row Bullet steps the body
+    int maxFailedSteps = 3;      ///< failures in a row after which Bullet steps it, 1 to 1000000
 };
 
 struct btGnnSolverMessage {
@@ -87,6 +87,7 @@ struct btGnnSolverStatus {
 /// Remove soft bodies from the world before deleting them, and keep the solver until then.
 class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
  public:
+    /// @throws cloth::ArgumentError if there is no factory or a setting is out of range
     explicit btGnnSoftBodySolver(cloth::StepperFactory factory, btGnnSolverSettings settings = {});
     ~btGnnSoftBodySolver() override;
 

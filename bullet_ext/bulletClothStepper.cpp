@@ -12,7 +12,7 @@
 #include <limits>
 
 #include "bullet_ext/bulletHulls.h"
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 
@@ -22,18 +22,11 @@ constexpr double kFarthest = 1e6;    ///< floats are too coarse for cloth out th
 constexpr double kExploded = 100.0;  ///< cloth that moved farther in one step has exploded (m)
 
 void validate(const BulletClothSettings& settings) {
-    const auto check = [](const char* field, double value, double low, double high) {
-        if (!(value >= low && value <= high))
-            throw ArgumentError(std::string("BulletClothSettings.") + field,
-                                "is " + std::to_string(value),
-                                "use " + std::to_string(low) + " to " + std::to_string(high));
-    };
-    check("substep_dt", settings.substep_dt, 1e-4, 0.1);
-    check("voxel", settings.voxel, 1e-3, 0.25);
-    check("hull_margin", settings.hull_margin, 0.0, 0.05);
-    check("segments", settings.segments, 1, 1000);
-    check("cloth.iterations", settings.cloth.iterations, 1, 1000);
-    check("cloth.margin", settings.cloth.margin, 1e-4, 0.25);
+    check_range("BulletClothSettings.substep_dt", settings.substep_dt, 1e-4, 0.1);
+    check_range("BulletClothSettings.voxel", settings.voxel, 1e-3, 0.25);
+    check_range("BulletClothSettings.hull_margin", settings.hull_margin, 0.0, 0.05);
+    check_range("BulletClothSettings.segments", settings.segments, 1, 1000);
+    checkSoftBodySettings(settings.cloth);
 }
 
 bool isFinite(const Obstacle& o) {

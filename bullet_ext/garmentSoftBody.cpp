@@ -2,6 +2,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -32,8 +33,18 @@ void appendLinks(btSoftBody& body, const Garment& garment, const SoftBodySetting
 
 }  // namespace
 
+void checkSoftBodySettings(const SoftBodySettings& settings) {
+    check_range("SoftBodySettings.iterations", settings.iterations, 1, 1000);
+    check_range("SoftBodySettings.margin", settings.margin, 1e-4, 0.25);
+    check_range("SoftBodySettings.stiffness", settings.stiffness, 0.0, 1.0);
+    check_range("SoftBodySettings.bending", settings.bending, 0.0, 1.0);
+    check_range("SoftBodySettings.friction", settings.friction, 0.0, 1.0);
+    check_range("SoftBodySettings.contact_hardness", settings.contact_hardness, 0.0, 1.0);
+}
+
 btSoftBody* createGarmentSoftBody(btSoftBodyWorldInfo& info, const Garment& garment,
                                   const ClothState& state, const SoftBodySettings& settings) {
+    checkSoftBodySettings(settings);
     if (state.x.rows() != garment.vertex_count() || state.v.rows() != garment.vertex_count())
         throw ArgumentError("state of garment " + garment.name(),
                             "has another number of vertices than the garment",

@@ -11,14 +11,17 @@ namespace cloth {
 
 /// How Bullet's own solver is set up for cloth that a competent user ships.
 struct SoftBodySettings {
-    int iterations = 10;     ///< position iterations, 2 to 100: with 1 Bullet's cloth explodes
-    double margin = 4e-3;    ///< distance kept from obstacles (m), 1e-3 to 0.05; Bullet's own: 0.25
+    int iterations = 10;     ///< position iterations, 1 to 1000: with 1 Bullet's cloth explodes
+    double margin = 4e-3;    ///< distance kept from obstacles (m), 1e-4 to 0.25; Bullet's own: 0.25
     double stiffness = 1.0;  ///< kLST of the edges, 0 to 1
     double bending = 0.1;    ///< kLST of the links across hinges, 0 to 1; 0: no such links
     double friction = 1.0;   ///< kDF, times the obstacle's friction, 0 to 1
     double contact_hardness =
         1.0;  ///< kCHR and kKHR, 0 to 1; Bullet's kKHR of 0.1 lets cloth through
 };
+
+/// @throws ArgumentError naming the setting that is out of range
+void checkSoftBodySettings(const SoftBodySettings& settings);
 
 /// A Bullet soft body equal to the garment: node i is vertex i, face f is face f; the garment's
 /// masses, pins as zero inverse mass, a link per edge and a bending link across each hinge, with

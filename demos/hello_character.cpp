@@ -130,9 +130,8 @@ btGnnSoftBodySolver make_solver(const std::string& name) {
     if (name != "quasi-newton")
         settings.weights = std::make_shared<const cloth::EngineWeights>(
             cloth::Weights::load(cloth::asset_path("weights/" + name + ".safetensors")));
-    return btGnnSoftBodySolver([settings](const cloth::Garment& garment) {
-        return cloth::make_cloth(garment, settings);
-    });
+    return btGnnSoftBodySolver(
+        [settings](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
 }
 
 void measure(const cloth::Garment& garment, const btSoftBody& body, const cloth::TriMesh& skin,

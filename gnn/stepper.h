@@ -20,22 +20,22 @@ struct StageTimes {
 
 /// What happened inside one step; the per-frame path reports, it does not throw.
 struct StepReport {
-    bool finite = true;   ///< false: the state was left as it was before the step
-    int iterations = 0;   ///< solver iterations spent
-    int substeps = 1;     ///< equal parts in which the step was taken
+    bool finite = true;  ///< false: the state was left as it was before the step
+    int iterations = 0;  ///< solver iterations spent
+    int substeps = 1;    ///< equal parts in which the step was taken
     /// |gradient| of the incremental potential after the step, over the norm of gravity's and
     /// inertia's forces at x_t; none: not computed.
     std::optional<double> residual;
     /// What the last five quasi-Newton iterations gained, as a distance (m), see MinimiseReport;
     /// none: there were fewer.
     std::optional<double> gain;
-    bool converged = false;  ///< the stepper's own tolerance was met
+    bool converged = false;            ///< the stepper's own tolerance was met
     bool prediction_rejected = false;  ///< the network's answer was not finite, or of higher energy
                                        ///< than the guess, which the step started from instead
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
                                    ///< that is not pinned, edge midpoint or face centre
-    double max_entry = 0.0;  ///< deepest vertex before contact projection moved it out (m): a
-                             ///< contact that the step did not foresee
+    double max_entry = 0.0;        ///< deepest vertex before contact projection moved it out (m): a
+                                   ///< contact that the step did not foresee
     /// How thick the thinnest obstacle is that the garment went through on the way (m), see
     /// TunnellingDetector; none: nothing was found, or it was not searched for.
     std::optional<double> tunnelled;
@@ -80,8 +80,8 @@ class Stepper {
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
 
-    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3, N);
-    /// they sum to zero. What they leave of a step's change of momentum came from outside.
+    /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
+    /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know
     virtual bool internal_forces(const Points& x, Points& forces) const {
         (void)x, (void)forces;

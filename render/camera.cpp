@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -31,12 +32,6 @@ Eigen::Matrix3d axes_of(const std::string& who, const Vec3& direction, const Vec
     return axes;
 }
 
-void require_range(const std::string& name, double value, double low, double high) {
-    if (value >= low && value <= high) return;
-    throw ArgumentError(name, std::to_string(value) + " is out of range",
-                        "choose " + std::to_string(low) + " to " + std::to_string(high));
-}
-
 }  // namespace
 
 Eigen::Matrix4d view_matrix(const Camera& camera) {
@@ -50,10 +45,10 @@ Eigen::Matrix4d view_matrix(const Camera& camera) {
 }
 
 Eigen::Matrix4d projection_matrix(const Camera& camera, double aspect) {
-    require_range("Camera::fov_y_deg", camera.fov_y_deg, 5.0, 120.0);
-    require_range("Camera::near_plane", camera.near_plane, 1e-6, 1e6);
-    require_range("Camera::far_plane", camera.far_plane, 1.001 * camera.near_plane, 1e9);
-    require_range("aspect", aspect, 0.01, 100.0);
+    check_range("Camera.fov_y_deg", camera.fov_y_deg, 5.0, 120.0);
+    check_range("Camera.near_plane", camera.near_plane, 1e-6, 1e6);
+    check_range("Camera.far_plane", camera.far_plane, 1.001 * camera.near_plane, 1e9);
+    check_range("aspect", aspect, 0.01, 100.0);
     const double scale = 1.0 / std::tan(half_angle(camera.fov_y_deg));
     const double depth = camera.near_plane - camera.far_plane;
     Eigen::Matrix4d projection = Eigen::Matrix4d::Zero();
@@ -74,11 +69,11 @@ PixelPosition project(const Camera& camera, const Vec3& point, int width, int he
 
 FigureTracker::FigureTracker(const FramingSettings& settings, double aspect)
     : m_settings(settings), m_axes(axes_of("FramingSettings", settings.direction, settings.up)) {
-    require_range("FramingSettings::fov_y_deg", settings.fov_y_deg, 5.0, 120.0);
-    require_range("FramingSettings::margin", settings.margin, 0.0, 0.2);
-    require_range("FramingSettings::dead_zone", settings.dead_zone, 0.0, 0.2);
-    require_range("FramingSettings::smoothing", settings.smoothing, 0.0, 1.0);
-    require_range("aspect", aspect, 0.01, 100.0);
+    check_range("FramingSettings.fov_y_deg", settings.fov_y_deg, 5.0, 120.0);
+    check_range("FramingSettings.margin", settings.margin, 0.0, 0.2);
+    check_range("FramingSettings.dead_zone", settings.dead_zone, 0.0, 0.2);
+    check_range("FramingSettings.smoothing", settings.smoothing, 0.0, 1.0);
+    check_range("aspect", aspect, 0.01, 100.0);
     const double tangent = std::tan(half_angle(settings.fov_y_deg));
     m_tangents = Vec3(tangent * aspect, tangent, 0.0);
 }

@@ -12,8 +12,8 @@ struct Camera {
     Vec3 target = Vec3(0, 1, 0);  ///< (m), any point other than `eye`
     Vec3 up = Vec3(0, 1, 0);      ///< what shall point up in the picture; not along the view
     double fov_y_deg = 30.0;      ///< vertical field of view (degrees), 5 to 120
-    double near_plane = 0.1;      ///< nearest visible distance (m), above 0
-    double far_plane = 100.0;     ///< farthest visible distance (m)
+    double near_plane = 0.1;      ///< nearest visible distance (m), 1e-6 to 1e6
+    double far_plane = 100.0;     ///< farthest visible distance (m), 1.001 near_plane to 1e9
 };
 
 /// Where a point appears: pixels from the top left corner of the picture (pixel centres at .5).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "render/text.h"
 
@@ -44,9 +45,9 @@ void check(const std::vector<Image>& panels, const std::vector<std::string>& cap
                             std::to_string(captions.size()) + " captions for " +
                                 std::to_string(panels.size()) + " panels",
                             "pass one caption per panel, or none");
-    if (settings.columns < 0 || settings.gap < 0 || settings.gap > 200)
-        throw ArgumentError("MontageSettings", "columns or gap are out of range",
-                            "columns is 0 or more, gap 0 to 200 pixels");
+    check_range("MontageSettings.columns", settings.columns, 0, 1000);
+    check_range("MontageSettings.gap", settings.gap, 0, 200);
+    check_range("MontageSettings.caption_height", settings.caption_height, 8, 200);
 }
 
 Layout layout_of(const std::vector<Image>& panels, bool captions, const MontageSettings& settings) {

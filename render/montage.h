@@ -8,8 +8,8 @@
 namespace cloth {
 
 struct MontageSettings {
-    int columns = 0;          ///< panels per row; 0: as shows them largest on a 16:9 screen
-    int gap = 4;              ///< between the panels (pixels), 0 to 200
+    int columns = 0;  ///< panels per row, 0 to 1000; 0: as shows them largest on a 16:9 screen
+    int gap = 4;      ///< between the panels (pixels), 0 to 200
     int caption_height = 24;  ///< size of the captions' font (pixels), 8 to 200
     Rgb background = {24, 27, 34};
     Rgb caption = {235, 238, 242};

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/mesh.h"
 #include "render/shaders.h"
@@ -105,8 +106,20 @@ void check_faces(const std::string& name, const SceneMesh& mesh) {
                             "pass the faces that belong to these vertices");
 }
 
+void check_ground_and_lights(const Scene& scene) {
+    check_range("Ground.height", scene.ground.height, -1000.0, 1000.0);
+    check_range("Ground.grid", scene.ground.grid, 0.01, 100.0);
+    check_range("Ground.radius", scene.ground.radius, 0.1, 1000.0);
+    check_range("Lights.key_strength", scene.lights.key_strength, 0.0, 10.0);
+    check_range("Lights.fill_strength", scene.lights.fill_strength, 0.0, 10.0);
+    check_range("Lights.ambient_sky", scene.lights.ambient_sky, 0.0, 10.0);
+    check_range("Lights.ambient_ground", scene.lights.ambient_ground, 0.0, 10.0);
+}
+
 Drawable drawable_of(const std::string& name, const SceneMesh& mesh) {
     check_faces(name, mesh);
+    check_range(name + ": SceneMesh.gloss", mesh.gloss, 0.0, 1.0);
+    check_range(name + ": SceneMesh.depth_offset", mesh.depth_offset, 0.0, 1.0);
     const Points& x = mesh.vertices;
     Faces faces(mesh.faces->rows(), 3);
     Eigen::Index count = 0;
@@ -267,14 +280,9 @@ class OsmesaRenderer::Implementation {
 
 OsmesaRenderer::Implementation::Implementation(const OsmesaSettings& settings)
     : m_settings(settings), m_scale(settings.anti_aliasing ? 2 : 1), m_context(nullptr) {
-    const auto check = [](const char* name, int value, int low) {
-        if (value < low || value > 4096)
-            throw ArgumentError(name, std::to_string(value) + " pixels is out of range",
-                                "choose " + std::to_string(low) + " to 4096");
-    };
-    check("OsmesaSettings::width", settings.width, 16);
-    check("OsmesaSettings::height", settings.height, 16);
-    check("OsmesaSettings::shadow_size", settings.shadow_size, 64);
+    check_range("OsmesaSettings.width", settings.width, 16, 4096);
+    check_range("OsmesaSettings.height", settings.height, 16, 4096);
+    check_range("OsmesaSettings.shadow_size", settings.shadow_size, 64, 4096);
     m_buffer.resize(std::size_t(4) * settings.width * settings.height * m_scale * m_scale);
     m_context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 0, 0, nullptr);
     if (!m_context) throw osmesa_error("", "no off-screen context can be made");
@@ -324,6 +332,7 @@ void OsmesaRenderer::Implementation::make_shadow_map() {
 }
 
 Image OsmesaRenderer::Implementation::render(const Scene& scene, const Camera& camera) {
+    check_ground_and_lights(scene);
     make_current();
     std::vector<Drawable> drawables;
     for (std::size_t i = 0; i < scene.meshes.size(); ++i)

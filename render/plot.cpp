@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "render/label_placement.h"
 
@@ -58,10 +59,8 @@ std::string text_element(double x, double y, const std::string& text, const std:
 }
 
 void check(const std::vector<Series>& series, const PlotSettings& settings) {
-    if (settings.width < 200 || settings.width > 4000 || settings.height < 120 ||
-        settings.height > 4000)
-        throw ArgumentError("PlotSettings", "the size is out of range",
-                            "choose a width of 200 to 4000 and a height of 120 to 4000 pixels");
+    check_range("PlotSettings.width", settings.width, 200, 4000);
+    check_range("PlotSettings.height", settings.height, 120, 4000);
     for (const Series& s : series) {
         if (s.x.size() != s.y.size() || (!s.texts.empty() && s.texts.size() != s.x.size()))
             throw ArgumentError("series '" + s.name + "'",

@@ -19,9 +19,9 @@ struct SceneMesh {
     Rgb back_colour = {160, 160, 160};   ///< of the back, if it is drawn
     bool two_sided = false;              ///< false: faces seen from behind are not drawn
     double gloss = 0.15;                 ///< strength of the highlight, 0 (cloth) to 1 (varnish)
-    double depth_offset = 0.0;           ///< drawn as if this much farther away (m). A body under
-                                         ///< thin cloth with 0.002 does not shine through it where
-                                         ///< flat faces cut round ones; 0 shows all as it is.
+    double depth_offset = 0.0;  ///< drawn as if this much farther away (m), 0 to 1. A body under
+                                ///< thin cloth with 0.002 does not shine through it where
+                                ///< flat faces cut round ones; 0 shows all as it is.
 };
 
 /// A shirt-like colour pair: the back is darker and less saturated, so that the two sides differ.
@@ -41,15 +41,15 @@ struct Label {
 /// The floor: a horizontal plane with a grid of lines, which fades into the background.
 struct Ground {
     bool visible = true;
-    double height = 0.0;         ///< along y (m)
-    double grid = 0.5;           ///< distance of the lines (m)
+    double height = 0.0;         ///< along y (m), -1000 to 1000
+    double grid = 0.5;           ///< distance of the lines (m), 0.01 to 100
     Vec3 centre = Vec3::Zero();  ///< where the floor is clearest (m); follow the figure with it
-    double radius = 4.0;         ///< where it has faded (m)
+    double radius = 4.0;         ///< where it has faded (m), 0.1 to 1000
     Rgb colour = {126, 132, 140};
     Rgb line = {104, 110, 118};
 };
 
-/// Directional lights; directions point from the scene to the light, any length.
+/// Directional lights; directions, of any length, point to the light. Strengths are 0 to 10.
 struct Lights {
     Vec3 key = Vec3(0.75, 0.9, 0.55);
     double key_strength = 0.72;

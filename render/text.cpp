@@ -8,6 +8,7 @@
 #include <sstream>
 #include <vector>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -78,9 +79,7 @@ struct Font::Face {
     }
 
     void set_size(int pixels) const {
-        if (pixels < 8 || pixels > 200)
-            throw ArgumentError("text height", std::to_string(pixels) + " pixels",
-                                "choose 8 to 200");
+        check_range("text height (pixels)", pixels, 8, 200);
         if (FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(pixels)))
             throw LoadError(path, "", "the font cannot be drawn at that size",
                             "choose a scalable TrueType font");

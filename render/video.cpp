@@ -12,6 +12,7 @@ extern "C" {
 #include <array>
 #include <cmath>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "render/replaced_file.h"
 
@@ -47,17 +48,9 @@ void check_settings(int width, int height, const VideoSettings& settings) {
             "VideoWriter",
             "size " + std::to_string(width) + " x " + std::to_string(height) + " cannot be encoded",
             "choose even sizes of 16 to 8192 pixels; montage() makes even ones");
-    if (!(settings.fps >= 1.0 && settings.fps <= 240.0))
-        throw ArgumentError("VideoSettings::fps", std::to_string(settings.fps) + " is out of range",
-                            "choose 1 to 240 pictures per second");
-    if (settings.quality < 0 || settings.quality > 51)
-        throw ArgumentError("VideoSettings::quality",
-                            std::to_string(settings.quality) + " is out of range",
-                            "choose 0 (lossless) to 51 (unusable)");
-    if (settings.key_frame_interval < 1 || settings.key_frame_interval > 600)
-        throw ArgumentError("VideoSettings::key_frame_interval",
-                            std::to_string(settings.key_frame_interval) + " is out of range",
-                            "choose 1 to 600 pictures");
+    check_range("VideoSettings.fps", settings.fps, 1.0, 240.0);
+    check_range("VideoSettings.quality", settings.quality, 0, 51);
+    check_range("VideoSettings.key_frame_interval", settings.key_frame_interval, 1, 600);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "collision/geometry/faces_in_range.h"
 #include "collision/proximity/mesh_surface.h"
 #include "collision/proximity/obstacle_trees.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/primitives.h"
 #include "data/core/triangle.h"
@@ -237,9 +238,8 @@ struct Proximity::Impl {
 };
 
 Proximity::Proximity(ProximitySettings settings, std::shared_ptr<ObstacleTrees> trees) {
-    if (!(settings.radius > 0.0) || !std::isfinite(settings.radius))
-        throw ArgumentError("ProximitySettings::radius", "it is not positive and finite",
-                            "give a length of 0.01 to 0.5 m");
+    check_range("ProximitySettings.radius", settings.radius, 0.01, 2.0);
+    check_range("ProximitySettings.threads", settings.threads, 0, 1024);
     m_impl = std::make_unique<Impl>(settings, std::move(trees));
 }
 

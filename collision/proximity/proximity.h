@@ -42,8 +42,8 @@ struct SurfaceContacts {
 };
 
 struct ProximitySettings {
-    double radius = 0.1;  ///< how far a query looks (m), 0.01 to 0.5; larger costs time
-    int threads = 0;      ///< 0: as many as OpenMP gives; results do not depend on it
+    double radius = 0.1;  ///< how far a query looks (m), 0.01 to 2; larger costs time
+    int threads = 0;      ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
 };
 
 /// What a query of some rows leaves out.
@@ -75,7 +75,7 @@ struct Cover {
 /// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
 /// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points
 /// with coordinates that are not finite have no contact. Unusable obstacles (see check_obstacles)
-/// are passed over, since nothing on the per-frame path throws.
+/// are passed over: nothing on the per-frame path throws. The constructor throws ArgumentError.
 class Proximity {
  public:
     /// @param trees  used where Boundary::trees is null; whoever gives it calls its begin_step().

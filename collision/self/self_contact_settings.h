@@ -10,7 +10,7 @@ struct SelfContactSettings {
     double weight = 5e5;     ///< w in w max(0, thickness - d)^3 per vertex (N/m^2), 1e3 to 1e6
     int rounds =
         8;  ///< of search and push in contact projection, 0 to 100; 0: no contact projection
-    int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
+    int threads = 0;  ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
 
     bool on() const { return thickness > 0.0; }
 };

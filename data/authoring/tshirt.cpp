@@ -71,10 +71,7 @@ void check_result(const TriMesh& shirt) {
 }  // namespace
 
 TriMesh make_tshirt(const TriMesh& body_rest, const TshirtRecipe& recipe) {
-    if (recipe.target_vertices < 500 || recipe.target_vertices > 20000)
-        throw ArgumentError("TshirtRecipe.target_vertices",
-                            std::to_string(recipe.target_vertices) + " is out of range",
-                            "give 500 to 20000");
+    check_tshirt_recipe(recipe);
     TriMesh shirt = tshirt_surface(body_rest, recipe);
     shirt = cut_neck(shirt, recipe);
     shirt = cut_hem(shirt, recipe);

@@ -16,7 +16,8 @@ namespace cloth {
 struct TshirtRecipe {
     int target_vertices = 4000;  ///< met within 3 %, 500 to 20,000
 
-    // Where the body is (m): rest pose of the default body, 1.66 m tall, arms 50 degrees down.
+    // Where the body is (m, each coordinate -5 to 5): rest pose of the default body, 1.66 m tall,
+    // arms 50 degrees down.
     Vec3 shoulder = Vec3(0.158, 1.325, 0.012);  ///< centre of the left shoulder joint
     Vec3 elbow = Vec3(0.335, 1.130, 0.026);     ///< centre of the left elbow
     Vec3 armpit = Vec3(0.168, 1.245, 0.010);    ///< top of the fold between left arm and chest
@@ -25,14 +26,17 @@ struct TshirtRecipe {
     double neck_tilt = 29.0;         ///< how far the opening leans forward (degrees), 0 to 60
     double neck_half_width = 0.078;  ///< of the opening, left to right (m), 0.05 to 0.15
     double neck_half_depth = 0.070;  ///< of the opening, front to back (m), 0.05 to 0.15
-    double sleeve_length = 0.55;  ///< end of the sleeve along the upper arm, 0 shoulder to 1 elbow
-    double hem_height = 0.81;     ///< height of the hem above the ground (m)
+    double sleeve_length = 0.55;  ///< end of the sleeve along the upper arm, 0 shoulder to 1 elbow,
+                                  ///< 0.3 to 0.8
+    double hem_height = 0.81;     ///< height of the hem above the ground (m), 0.3 to 1.5
 
     double chest_ease = 0.014;  ///< from the hull of the torso to the cloth (m), 0.008 to 0.05
     double sleeve_ease =
-        0.012;                  ///< from the widest part of the arm to the cloth (m), 0.008 to 0.05
-    double drape_radius = 0.6;  ///< hollows of the waist curved more than this are bridged (m)
-    double clearance = 0.0045;  ///< the cloth is nowhere nearer to the body than this (m)
+        0.012;  ///< from the widest part of the arm to the cloth (m), 0.008 to 0.05
+    double drape_radius =
+        0.6;  ///< hollows of the waist curved more than this are bridged (m), 0.3 to 10
+    double clearance =
+        0.0045;  ///< the cloth is nowhere nearer to the body than this (m), 0.001 to 0.01
 };
 
 /// @throws LoadError if the file is missing, is not JSON, or has a field that is unknown, of the

@@ -3,6 +3,8 @@
 #include <set>
 
 #include "data/authoring/tshirt.h"
+#include "data/authoring/tshirt_shape.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/printable.h"
 #include "data/core/read_file.h"
@@ -30,6 +32,8 @@ constexpr NumberField kNumbers[] = {
     {"drape_radius", &TshirtRecipe::drape_radius, 0.3, 10.0},
     {"clearance", &TshirtRecipe::clearance, 0.001, 0.01},
 };
+
+constexpr double farthest = 5.0;  // coordinates (m)
 
 struct PointField {
     const char* name;
@@ -60,7 +64,7 @@ Vec3 point_in(const std::string& path, const std::string& field, const Json& val
                         "give [x, y, z] in metres");
     Vec3 point;
     for (int axis = 0; axis < 3; ++axis)
-        point[axis] = number_in(path, field, value[static_cast<size_t>(axis)], -5.0, 5.0);
+        point[axis] = number_in(path, field, value[static_cast<size_t>(axis)], -farthest, farthest);
     return point;
 }
 
@@ -100,6 +104,17 @@ TshirtRecipe load_tshirt_recipe(const std::string& path) {
             throw LoadError(path, "field " + printable(name), "there is no such field",
                             "see data/tshirt.h");
     return recipe;
+}
+
+void check_tshirt_recipe(const TshirtRecipe& recipe) {
+    check_range("TshirtRecipe.target_vertices", recipe.target_vertices, 500, 20000);
+    for (const NumberField& field : kNumbers)
+        check_range(std::string("TshirtRecipe.") + field.name, recipe.*field.member, field.low,
+                    field.high);
+    for (const PointField& field : kPoints)
+        for (int axis = 0; axis < 3; ++axis)
+            check_range(std::string("TshirtRecipe.") + field.name, (recipe.*field.member)[axis],
+                        -farthest, farthest);
 }
 
 }  // namespace cloth

@@ -8,4 +8,7 @@ namespace cloth {
 /// The closed surface that a T-shirt is cut from: around torso, upper arms and neck.
 TriMesh tshirt_surface(const TriMesh& body, const TshirtRecipe& recipe);
 
+/// @throws ArgumentError naming the field that is out of range
+void check_tshirt_recipe(const TshirtRecipe& recipe);
+
 }  // namespace cloth

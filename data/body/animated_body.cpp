@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -60,8 +61,9 @@ BodyPose blend(const BodyPose& a, const BodyPose& b, double s) {
 void validate(const Motion& motion, const AnimationSettings& settings) {
     if (motion.frames.empty())
         throw ArgumentError("motion " + motion.name, "has no frames", "load one with frames");
-    if (!(settings.lead_in >= 0.0) || !(settings.start_ramp >= 0.0))
-        throw ArgumentError("settings", "lead_in or start_ramp is negative", "use seconds above 0");
+    check_range("AnimationSettings.lead_in", settings.lead_in, 0.0, 60.0);
+    check_range("AnimationSettings.start_ramp", settings.start_ramp, 0.0, 10.0);
+    check_range("AnimationSettings.friction", settings.friction, 0.0, 1.5);
 }
 
 }  // namespace

@@ -10,9 +10,9 @@ namespace cloth {
 
 struct AnimationSettings {
     double lead_in = 1.0;  ///< the body moves from its rest pose into the motion's first pose, so
-                           ///< that a garment made for the rest pose settles (s), 0.2 to 5
+                           ///< that a garment made for the rest pose settles (s), 0 to 60
     double start_ramp = 8.0 / 30.0;  ///< the motion then takes up speed over this time instead of
-                                     ///< with a jolt (s), 0 to 1; it ends start_ramp / 2 later
+                                     ///< with a jolt (s), 0 to 10; it ends start_ramp / 2 later
     double friction = 0.5;           ///< of the skin against cloth (Coulomb), 0 to 1.5
     bool limbs = true;  ///< obstacles have the body's limbs: cloth passes through those that pass
                         ///< through others

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "data/body/motion.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/printable.h"
 #include "data/core/read_file.h"
@@ -286,6 +287,7 @@ void drop_calibration(Motion& motion, FirstFrame policy) {
 }  // namespace
 
 Motion load_bvh(const std::string& path, const BvhSettings& settings) {
+    check_range("BvhSettings.scale", settings.scale, 0.0, 1e3);
     LineReader reader(path);
     std::vector<std::string> words;
     if (!reader.next(words)) reader.fail("the file is empty", LineReader::truncated);

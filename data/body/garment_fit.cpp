@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "data/body/clearance.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/surface_distance.h"
 
@@ -61,6 +62,8 @@ void even_out(Points& values, const std::vector<std::array<int, 2>>& edges, int 
 
 Points fit_garment(const TriMesh& garment_rest, const TriMesh& body_from, const Points& body_to,
                    const GarmentFitSettings& settings) {
+    check_range("GarmentFitSettings.clearance", settings.clearance, 1e-4, 0.05);
+    check_range("GarmentFitSettings.smoothing", settings.smoothing, 0, 500);
     validate_mesh("fit_garment: garment_rest", garment_rest);
     check_bodies(body_from, body_to);
     Points displacement =

@@ -5,7 +5,8 @@
 namespace cloth {
 
 struct GarmentFitSettings {
-    double clearance = 0.0045;  ///< the cloth is nowhere nearer to the new body than this (m)
+    double clearance = 0.0045;  ///< the cloth is nowhere nearer to the new body than this (m),
+                                ///< 1e-4 to 0.05
     int smoothing = 40;         ///< rounds of averaging the displacement over the cloth, 0 to 500
 };
 

@@ -44,8 +44,8 @@ struct Motion {
 enum class FirstFrame { detect, keep, drop };
 
 struct BvhSettings {
-    double scale = 0.0;  ///< file units to metres; 0: the unit among m, cm, mm, inch and CMU's
-                         ///< (0.056444 m) that makes the figure's rest height closest to 1.6 m
+    double scale = 0.0;  ///< file units to metres, 0 to 1e3; 0: the one of m, cm, mm, inch and
+                         ///< CMU's (0.056444 m) that makes the rest height closest to 1.6 m
     FirstFrame first_frame = FirstFrame::detect;  ///< detect: drop a T-pose that the motion leaves
                                                   ///< in one jump
 };

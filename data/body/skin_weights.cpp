@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "data/body/segment_grid.h"
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -167,6 +168,9 @@ SkinWeights sparse_weights(const Eigen::MatrixXd& dense, int max_influences, dou
 
 SkinWeights heat_weights(const TriMesh& skin, const std::vector<BoneSegment>& bones,
                          int joint_count, const HeatWeightSettings& settings) {
+    check_range("HeatWeightSettings.heat", settings.heat, 0.1, 10.0);
+    check_range("HeatWeightSettings.max_influences", settings.max_influences, 1, 8);
+    check_range("HeatWeightSettings.threshold", settings.threshold, 0.0, 0.1);
     if (skin.faces.rows() == 0 || bones.empty())
         throw ArgumentError("skin", "has no faces or there are no bones", "give both");
     const HeatSources sources = find_sources(skin, bones, joint_count, settings.heat);

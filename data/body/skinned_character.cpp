@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 
@@ -36,8 +36,8 @@ SkinnedCharacter::SkinnedCharacter(const std::string& path, const CharacterSetti
       m_rig(load_character_rig(path, settings.animation, settings.mesh_name)),
       m_faces(std::make_shared<const Faces>(m_rig.faces)),
       m_scale(settings.scale) {
-    if (!(settings.scale > 0.0))
-        throw ArgumentError("scale", "is not positive", "give metres per unit of the file");
+    check_range("CharacterSettings.scale", settings.scale, 1e-6, 1e6);
+    check_range("CharacterSettings.friction", settings.friction, 0.0, 1.5);
 }
 
 Eigen::Affine3d SkinnedCharacter::local_transform(const CharacterNode& node, double time) const {

@@ -11,7 +11,7 @@ namespace cloth {
 struct CharacterSettings {
     std::string animation;  ///< its name in the file; empty: the first one
     std::string mesh_name;  ///< the mesh that is skin; empty: all meshes
-    double scale = 1.0;     ///< file units to metres, where the file does not say itself
+    double scale = 1.0;  ///< file units to metres, where the file does not say itself, 1e-6 to 1e6
     double friction = 0.5;  ///< of the skin against cloth (Coulomb), 0 to 1.5
 };
 

@@ -5,19 +5,16 @@
 #include <map>
 #include <utility>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
 
 static void validate_fabric(const std::string& name, const Fabric& fabric) {
-    const std::pair<const char*, double> constants[] = {{"density", fabric.density},
-                                                        {"mu", fabric.mu},
-                                                        {"lambda", fabric.lambda},
-                                                        {"bending", fabric.bending}};
-    for (const auto& [field, value] : constants)
-        if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && field[0] == 'd'))
-            throw ArgumentError(name + ": fabric." + field, "is negative, zero or not finite",
-                                "use SI units: density in kg/m^2, mu and lambda in N/m");
+    check_range(name + ": fabric.density", fabric.density, 1e-3, 1e3);
+    check_range(name + ": fabric.mu", fabric.mu, 0.0, 1e6);
+    check_range(name + ": fabric.lambda", fabric.lambda, 0.0, 1e6);
+    check_range(name + ": fabric.bending", fabric.bending, 0.0, 1.0);
 }
 
 static std::vector<Hinge> find_hinges(const Faces& faces) {

@@ -65,8 +65,8 @@ Integrator take_integrator(std::string& name) {
     return Integrator::bdf2;
 }
 
-/// What all solvers of a potential have: the integrator that the name ends with, which is taken off,
-/// and what the scene says of limbs and self-contact.
+/// What all solvers of a potential have: the integrator that the name ends with, which is taken
+/// off, and what the scene says of limbs and self-contact.
 void set_scene(std::string& name, const ComparisonScene& scene, ClothStepperSettings& settings) {
     settings.step.potential.integrator = take_integrator(name);
     settings.step.potential.self_contact = scene.self_contact();

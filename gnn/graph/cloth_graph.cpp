@@ -4,6 +4,8 @@
 #include <atomic>
 #include <numeric>
 
+#include "data/core/check_range.h"
+
 namespace cloth {
 
 namespace {
@@ -111,6 +113,8 @@ SamplingSchedule make_schedule(const std::vector<int>& first_edge, int steps, in
 }
 
 ClothGraph build_cloth_graph(const Garment& garment, const GraphSettings& settings) {
+    check_range("GraphSettings.steps", settings.steps, 1, 64);
+    check_range("GraphSettings.sampled_edges", settings.sampled_edges, 0, 32);
     static std::atomic<std::uint64_t> next_id{1};
     ClothGraph graph;
     graph.id = next_id++;

@@ -18,8 +18,8 @@ struct SamplingSchedule {
 };
 
 struct GraphSettings {
-    int steps = 21;          ///< message steps of the network
-    int sampled_edges = 0;   ///< edges per vertex and step; 0: all
+    int steps = 21;          ///< message steps of the network, 1 to 64
+    int sampled_edges = 0;   ///< edges per vertex and step, 0 to 32; 0: all
     std::uint64_t seed = 1;  ///< of the sampling schedule
 };
 

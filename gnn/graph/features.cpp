@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/core/check_range.h"
+
 namespace cloth {
 
 namespace {
@@ -46,6 +48,7 @@ FeatureBuilder::FeatureBuilder(const Garment& garment, const ClothGraph& graph,
       m_graph(&graph),
       m_settings(settings),
       m_material(scaled_material(garment.fabric())) {
+    check_range("FeatureSettings.world_radius", settings.world_radius, 1e-3, 1.0);
 }
 
 bool FeatureBuilder::build(const ClothState& state, const Boundary& boundary,
@@ -113,8 +116,8 @@ void FeatureBuilder::build_forces(const ClothState& state, const IncrementalPote
     for (Eigen::Index i = 0; i < gradient.rows(); ++i) {
         const double diagonal =
             masses[i] / (dt * dt) + stiffness * std::max(0.0, m_graph->laplacian_diagonal[i]);
-        put<NodeFeature::jacobi_base>(
-            features.node, i, squash(-per_metre / diagonal * gradient.row(i).transpose()));
+        put<NodeFeature::jacobi_base>(features.node, i,
+                                      squash(-per_metre / diagonal * gradient.row(i).transpose()));
     }
 }
 

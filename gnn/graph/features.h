@@ -12,7 +12,7 @@ namespace cloth {
 struct FeatureSettings {
     bool force_features =
         true;  ///< forces at x_t and at the base guess, besides the paper's features
-    double world_radius = 0.03;  ///< obstacles nearer than this send messages (m), 0.01 to 0.1
+    double world_radius = 0.03;  ///< obstacles nearer than this send messages (m), 1e-3 to 1
 };
 
 /// Input of the network for one step, not normalised, each quantity without dimension. A virtual

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/model/engine_workspace.h"
 
@@ -290,9 +291,7 @@ void Engine::Pass::decode(int group, EngineWorkspace::Scratch& mine) const {
 
 Engine::Engine(std::shared_ptr<const EngineWeights> weights, EngineSettings settings)
     : m_weights(std::move(weights)), m_settings(settings) {
-    if (settings.threads < 0)
-        throw ArgumentError("threads", std::to_string(settings.threads) + " is negative",
-                            "use 0 for as many as there are, or a positive number");
+    check_range("EngineSettings.threads", settings.threads, 0, 1024);
     if (!is_supported(settings.instructions))
         throw ArgumentError("instructions", "are not those of this processor",
                             "leave them at best_instructions()");

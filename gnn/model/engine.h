@@ -8,7 +8,7 @@
 namespace cloth {
 
 struct EngineSettings {
-    int threads = 0;  ///< 0: as many as OpenMP gives; results do not depend on it
+    int threads = 0;  ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
     Instructions instructions = best_instructions();
 };
 

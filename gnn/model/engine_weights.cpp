@@ -126,6 +126,7 @@ EngineWeights::EngineWeights(const Weights& weights, Precision precision)
     : m_config(weights.config),
       m_precision(precision),
       m_relative_columns(columns_called("relative")) {
+    m_config.check();
     if (m_config.width % 16 != 0 || m_config.hidden_layers != 2)
         throw ArgumentError("weights of '" + m_config.variant + "'",
                             "have width " + std::to_string(m_config.width) + " and " +

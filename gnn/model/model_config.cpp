@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -43,23 +44,14 @@ std::string ModelConfig::to_json() const {
         .dump();
 }
 
-static void check_range(const std::string& file, const char* field, double value, double low,
-                        double high) {
-    if (!(value >= low && value <= high))
-        throw LoadError(file, std::string("configuration, field '") + field + "'",
-                        "is " + std::to_string(value) + ", outside " + std::to_string(low) +
-                            " to " + std::to_string(high),
-                        "export the network again");
-}
-
-static void check_ranges(const ModelConfig& c, const std::string& file) {
-    check_range(file, "steps", c.steps, 1, 64);
-    check_range(file, "width", c.width, 4, 512);
-    check_range(file, "hidden_layers", c.hidden_layers, 1, 4);
-    check_range(file, "sampled_edges", c.sampled_edges, 0, 32);
-    check_range(file, "message_scale", c.message_scale, 1e-3, 10);
-    check_range(file, "dt", c.dt, 1e-4, 1);
-    check_range(file, "world_radius", c.features.world_radius, 1e-3, 1);
+void ModelConfig::check() const {
+    check_range("ModelConfig.steps", steps, 1, 64);
+    check_range("ModelConfig.width", width, 4, 512);
+    check_range("ModelConfig.hidden_layers", hidden_layers, 1, 4);
+    check_range("ModelConfig.sampled_edges", sampled_edges, 0, 32);
+    check_range("ModelConfig.message_scale", message_scale, 1e-3, 10.0);
+    check_range("ModelConfig.dt", dt, 1e-4, 1.0);
+    check_range("ModelConfig.features.world_radius", features.world_radius, 1e-3, 1.0);
 }
 
 ModelConfig ModelConfig::from_json(const std::string& text, const std::string& file) {
@@ -81,7 +73,11 @@ ModelConfig ModelConfig::from_json(const std::string& text, const std::string& f
     } catch (const json::exception& error) {
         throw LoadError(file, "configuration", error.what(), "export the network again");
     }
-    check_ranges(c, file);
+    try {
+        c.check();
+    } catch (const ArgumentError& error) {
+        throw LoadError(file, "configuration", error.what(), "export the network again");
+    }
     return c;
 }
 

@@ -27,12 +27,12 @@ struct ModelConfig {
     int steps = 21;                   ///< message passing steps, 1 to 64
     int width = 128;                  ///< latent size, 4 to 512
     int hidden_layers = 2;            ///< per multilayer perceptron, 1 to 4
-    int sampled_edges = 4;            ///< incoming edges per vertex and step; 0: all of them
+    int sampled_edges = 4;            ///< incoming edges per vertex and step, 0 to 32; 0: all
     bool world_every_step = false;    ///< body to garment messages in every step, or the first only
     bool body_updates = false;        ///< garment to body messages change the body nodes
-    double message_scale = 0.4;       ///< factor on the sum of a vertex's messages
+    double message_scale = 0.4;       ///< factor on the sum of a vertex's messages, 1e-3 to 10
     std::uint64_t schedule_seed = 1;  ///< of the sampling schedule
-    double dt = 1.0 / 30.0;           ///< time step that the network is trained for (s)
+    double dt = 1.0 / 30.0;           ///< time step that the network is trained for (s), 1e-4 to 1
     FeatureSettings features;
 
     /// @throws ArgumentError if `name` is not one of variant_names()
@@ -41,6 +41,9 @@ struct ModelConfig {
 
     bool has_world(int step) const { return world_every_step || step == 0; }
     GraphSettings graph_settings() const { return {steps, sampled_edges, schedule_seed}; }
+
+    /// @throws ArgumentError naming the field that is out of range
+    void check() const;
 
     std::string to_json() const;
     /// @param file  named in errors

@@ -27,6 +27,7 @@ struct Network::World {
 
 Network::Network(const ModelConfig& config, torch::Device device, std::uint64_t seed)
     : m_config(config), m_device(device), m_parameters(config, device, seed) {
+    config.check();
     const auto unit = [](const FeatureLayout& layout) {
         return StatisticsAccumulator(layout).statistics();
     };

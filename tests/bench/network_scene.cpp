@@ -7,8 +7,8 @@
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
-#include "gnn/physics/stepper/guess.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
+#include "gnn/physics/stepper/guess.h"
 
 namespace cloth::test {
 namespace {

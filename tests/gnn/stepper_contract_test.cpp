@@ -1,7 +1,7 @@
 #include "tests/gnn/stepper_contract.h"
 
-#include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 
 namespace cloth::test {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "data/core/check_range.h"
 #include "data/core/errors.h"
 
 namespace cloth {
@@ -20,11 +21,15 @@ void require_rows(const char* name, Eigen::Index rows, Eigen::Index expected) {
                             "pass one row per vertex of the garment");
 }
 
-void require_setting(const char* name, double value, bool zero_allowed) {
-    if (!std::isfinite(value) || value < 0.0 || (value == 0.0 && !zero_allowed))
-        throw ArgumentError(std::string("PotentialSettings.") + name,
-                            std::to_string(value) + " is out of range",
-                            "see the range in the comment of PotentialSettings");
+void check_settings(const PotentialSettings& settings) {
+    const double distance = settings.contact_distance;
+    check_range("PotentialSettings.contact_distance", distance, 1e-3, 1e-2);
+    check_range("PotentialSettings.contact_weight", settings.contact_weight, 1e3, 1e6);
+    check_range("PotentialSettings.ridge_distance", settings.ridge_distance, 0.0, distance);
+    check_range("PotentialSettings.friction_scale", settings.friction_scale, 0.0, 10.0);
+    check_range("PotentialSettings.friction_distance", settings.friction_distance, 0.0, 0.1);
+    check_range("PotentialSettings.friction_slip", settings.friction_slip, 1e-7, 1e-2);
+    check_range("PotentialSettings.friction_limit", settings.friction_limit, 0.0, 100.0);
 }
 
 void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, const Garment& garment) {
@@ -63,13 +68,7 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
       m_inertia(garment),
       m_ridges(garment),
       m_self_contact(garment, settings.self_contact) {
-    require_setting("contact_distance", settings.contact_distance, true);
-    require_setting("contact_weight", settings.contact_weight, true);
-    require_setting("ridge_distance", settings.ridge_distance, true);
-    require_setting("friction_scale", settings.friction_scale, true);
-    require_setting("friction_distance", settings.friction_distance, true);
-    require_setting("friction_slip", settings.friction_slip, false);
-    require_setting("friction_limit", settings.friction_limit, true);
+    check_settings(settings);
 }
 
 void IncrementalPotential::begin_step(const ClothState& state, const Boundary& boundary,

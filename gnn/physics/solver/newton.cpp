@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 
 namespace cloth {
 
@@ -55,17 +55,9 @@ double rounding(double energy) {
 }
 
 void validate(const NewtonSettings& settings) {
-    if (settings.max_iterations < 0 || settings.max_iterations > 10000)
-        throw ArgumentError("NewtonSettings.max_iterations",
-                            std::to_string(settings.max_iterations) + " is out of range",
-                            "choose 0 to 10000");
-    if (!(settings.tolerance >= 0.0 && settings.tolerance <= 1.0))
-        throw ArgumentError("NewtonSettings.tolerance",
-                            std::to_string(settings.tolerance) + " is out of range",
-                            "choose 0 to 1, 1e-4 for a converged step");
-    if (!(settings.exact_below >= 0.0))
-        throw ArgumentError("NewtonSettings.exact_below", "is negative or not a number",
-                            "choose 0 or more, 0.1 by default");
+    check_range("NewtonSettings.max_iterations", settings.max_iterations, 0, 10000);
+    check_range("NewtonSettings.tolerance", settings.tolerance, 0.0, 1.0);
+    check_range("NewtonSettings.exact_below", settings.exact_below, 0.0, 1.0);
 }
 
 }  // namespace

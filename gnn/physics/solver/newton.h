@@ -10,7 +10,7 @@ struct NewtonSettings {
     int max_iterations = 60;  ///< 0 to 10000; each costs one Hessian and one factorisation
     double tolerance = 1e-4;  ///< stop at this residual, 0 to 1
     /// Below this residual the exact Hessian is tried first and the projected one only where the
-    /// exact one is not positive definite; 0: always projected.
+    /// exact one is not positive definite, 0 to 1; 0: always projected.
     double exact_below = 0.1;
 };
 

@@ -21,9 +21,9 @@ class QuasiNewtonMatrix {
  public:
     explicit QuasiNewtonMatrix(const Garment& garment);
 
-    /// Chooses P for the garment's masses and fabric and the time step (s) and factorises it, unless
-    /// it is among the factors that are kept: those of the last max_factors time steps, so that a
-    /// step and its parts take turns at no cost. False: P is not positive definite in double
+    /// Chooses P for the garment's masses and fabric and the time step (s) and factorises it,
+    /// unless it is among the factors that are kept: those of the last max_factors time steps, so
+    /// that a step and its parts take turns at no cost. False: P is not positive definite in double
     /// precision.
     bool prepare(const Garment& garment, double dt);
 

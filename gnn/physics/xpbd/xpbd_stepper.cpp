@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "data/core/errors.h"
+#include "data/core/check_range.h"
 #include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
@@ -22,18 +22,12 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 const XpbdSettings& checked(const XpbdSettings& settings) {
-    const auto check = [](const char* field, double value, double low, double high) {
-        if (!(value >= low && value <= high))
-            throw ArgumentError(std::string("XpbdSettings.") + field,
-                                std::to_string(value) + " is out of range",
-                                "use " + std::to_string(low) + " to " + std::to_string(high));
-    };
-    check("substeps", settings.substeps, 1, 1000);
-    check("iterations", settings.iterations, 1, 100);
-    check("relaxation", settings.relaxation, 1.0, 1.3);
-    check("damping", settings.damping, 0.0, 10.0);
-    check("bending_angle", settings.bending_angle, 0.01, 1.5);
-    check("contact_distance", settings.contact_distance, safety_distance, 1e-2);
+    check_range("XpbdSettings.substeps", settings.substeps, 1, 1000);
+    check_range("XpbdSettings.iterations", settings.iterations, 1, 100);
+    check_range("XpbdSettings.relaxation", settings.relaxation, 1.0, 1.3);
+    check_range("XpbdSettings.damping", settings.damping, 0.0, 10.0);
+    check_range("XpbdSettings.bending_angle", settings.bending_angle, 0.01, 1.5);
+    check_range("XpbdSettings.contact_distance", settings.contact_distance, safety_distance, 1e-2);
     return settings;
 }
 

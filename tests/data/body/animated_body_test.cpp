@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "tests/data/files/file_fixture.h"
+#include "tests/ranges.h"
 
 using namespace cloth;
 using namespace cloth::test;
@@ -217,4 +218,14 @@ TEST(AnimatedBody, AnUnknownSkeletonNamesTheMissingJoints) {
     motion = jumps();
     motion.frames.clear();
     EXPECT_THROW(AnimatedBody(default_body(), motion), ArgumentError);
+}
+
+TEST(AnimatedBody, SettingsOutOfRangeAreRefused) {
+    using S = AnimationSettings;
+    Motion short_one = jumps();
+    short_one.frames.resize(3);
+    const auto use = [&](const S& settings) { AnimatedBody(default_body(), short_one, settings); };
+    test::expect_range("AnimationSettings.lead_in", &S::lead_in, 0.0, 60.0, use);
+    test::expect_range("AnimationSettings.start_ramp", &S::start_ramp, 0.0, 10.0, use);
+    test::expect_range("AnimationSettings.friction", &S::friction, 0.0, 1.5, use);
 }

@@ -7,6 +7,7 @@
 #include "data/core/mesh.h"
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
+#include "tests/ranges.h"
 
 using namespace cloth;
 using namespace cloth::test;
@@ -103,8 +104,13 @@ TEST(SkinnedCharacter, ScaleTurnsFileUnitsIntoMetres) {
     const Points whole = SkinnedCharacter(model_path(strip)).vertices(0.7);
     const Points small = SkinnedCharacter(model_path(strip), settings).vertices(0.7);
     EXPECT_LT((small - 0.01 * whole).cwiseAbs().maxCoeff(), 1e-12);
-    settings.scale = 0.0;
-    EXPECT_THROW(SkinnedCharacter(model_path(strip), settings), ArgumentError);
+}
+
+TEST(SkinnedCharacter, SettingsOutOfRangeAreRefused) {
+    using S = CharacterSettings;
+    const auto use = [](const S& settings) { SkinnedCharacter(model_path(strip), settings); };
+    test::expect_range("CharacterSettings.scale", &S::scale, 1e-6, 1e6, use);
+    test::expect_range("CharacterSettings.friction", &S::friction, 0.0, 1.5, use);
 }
 
 using CharacterFile = FileTest;

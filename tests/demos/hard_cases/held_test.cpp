@@ -65,7 +65,8 @@ TEST_P(HeldCases, AreHeldOrKnownFailuresForAnyNumberOfThreads) {
     const HardRun one = run(hard, parts, frames, stepper, 1);
     const auto known = known_failures.find(GetParam());
     if (known == known_failures.end())
-        EXPECT_TRUE(one.held()) << "frame " << one.first_failed_frame.value_or(-1) << ": " << one.failure;
+        EXPECT_TRUE(one.held()) << "frame " << one.first_failed_frame.value_or(-1) << ": "
+                                << one.failure;
     else
         EXPECT_FALSE(one.held()) << "is held now; not a known failure any more: " << known->second;
     const HardRun two = run(hard, parts, frames / 2 + 1, stepper, 2);

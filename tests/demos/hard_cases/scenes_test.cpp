@@ -160,9 +160,8 @@ int frames_tunnelled(const HardCase& hard, double watch_motion) {
         const StepReport report = stepper.step(boundary, scene.dt(), state);
         boundary.ignored_limbs = stepper.ignored_limbs();
         // Over sub-steps paths are bent: what went through in them, the report says.
-        frames += report.substeps > 1
-                      ? report.tunnelled.has_value()
-                      : !detector.find(boundary, before, state.x, 0).empty();
+        frames += report.substeps > 1 ? report.tunnelled.has_value()
+                                      : !detector.find(boundary, before, state.x, 0).empty();
     }
     return frames;
 }

@@ -25,8 +25,7 @@ class SilentPredictor : public Predictor {
 /// The most tangles of a frame while a folded sheet falls on the floor.
 int most_tangles(double thickness) {
     const test::LayerScene scene = test::folded_sheet(200, 0.02);
-    ClothStepperSettings settings =
-        ClothStepperSettings::plain(IterationLimits::controlled());
+    ClothStepperSettings settings = ClothStepperSettings::plain(IterationLimits::controlled());
     settings.step.potential.self_contact.thickness = thickness;
     const auto made = make_cloth(scene.garment, std::make_shared<SilentPredictor>(), settings);
     Stepper& learned = *made;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/gnn/physics/solver/solver_scenes.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
+#include "tests/gnn/physics/solver/solver_scenes.h"
 
 using namespace cloth;
 using cloth::test::sheet_on_sphere;
@@ -46,8 +46,7 @@ double error_after_one_second(Integrator kind, int steps) {
 /// Root mean square distance (m) of a sheet after half a second of swing to the fine solution.
 double swing_error(Integrator kind, const Points& fine) {
     SolverScene scene = swinging_sheet(8);
-    ClothStepperSettings settings =
-        ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
+    ClothStepperSettings settings = ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
     settings.step.potential.integrator = kind;
     ClothStepper stepper(scene.garment, settings);
     for (int k = 0; k < 15; ++k)
@@ -121,8 +120,7 @@ TEST(TimeIntegration, FreeFallIsExactAfterTheFirstStep) {
 
 TEST(TimeIntegration, Bdf2BringsASwingingSheetNearerToTheFineSolution) {
     SolverScene scene = swinging_sheet(8);
-    ClothStepperSettings settings =
-        ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
+    ClothStepperSettings settings = ClothStepperSettings::plain(IterationLimits::until(1e-4, 100));
     ClothStepper stepper(scene.garment, settings);
     for (int k = 0; k < 15 * 32; ++k) stepper.step(scene.boundary, 1.0 / 960.0, scene.state);
     EXPECT_LT(swing_error(Integrator::bdf2, scene.state.x),
