@@ -17,7 +17,7 @@ std::unique_ptr<ClothStepper> make_cloth(const Garment& garment,
                                          const ClothStepperSettings& settings) {
     std::shared_ptr<StepStart> start;
     if (predictor) start = std::make_shared<NetworkStart>(garment, std::move(predictor));
-    return std::make_unique<ClothStepper>(garment, settings, std::move(start));
+    return std::make_unique<ClothStepper>(garment, settings, start);
 }
 
 }  // namespace cloth

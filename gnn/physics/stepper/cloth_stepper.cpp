@@ -43,18 +43,32 @@ void add(const StepReport& part, StepReport& report) {
 }  // namespace
 
 ClothStepper::ClothStepper(const Garment& garment, const ClothStepperSettings& settings,
-                           std::shared_ptr<StepStart> start)
-    : ClothStepper(garment, std::make_unique<StepSolver>(garment, settings.step, std::move(start)),
-                   settings.guard, settings.substeps) {
+                           const std::shared_ptr<StepStart>& start)
+    : ClothStepper(garment, settings, start, std::make_shared<ObstacleTrees>()) {
+}
+
+ClothStepper::ClothStepper(const Garment& garment, const ClothStepperSettings& settings,
+                           const std::shared_ptr<StepStart>& start,
+                           const std::shared_ptr<ObstacleTrees>& trees)
+    : ClothStepper(garment, std::make_unique<StepSolver>(garment, settings.step, start, trees),
+                   settings.guard, settings.substeps, trees) {
 }
 
 ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
                            const GuardSettings& guard, int substeps)
+    : ClothStepper(garment, std::move(solver), guard, substeps, std::make_shared<ObstacleTrees>()) {
+}
+
+ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
+                           const GuardSettings& guard, int substeps,
+                           std::shared_ptr<ObstacleTrees> trees)
     : m_garment(&garment),
       m_guard(guard),
       m_substeps(substeps),
       m_solver(std::move(solver)),
-      m_detector(garment) {
+      m_trees(std::move(trees)),
+      m_limbs({}, m_trees),
+      m_detector(garment, m_trees) {
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);
     check_range("ClothStepperSettings.substeps", substeps, 1, 64);
@@ -78,6 +92,7 @@ bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
 
 StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
+    m_trees->begin_step();
     if (!m_guard.limbs) return guarded_step(boundary, dt, state);
     StepReport report = guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
     if (report.finite) report_ignored(state.x, report);
@@ -139,6 +154,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
     m_part.begin(*m_garment, state, boundary, substeps);
     for (int k = 0; k < substeps; ++k) {
+        m_trees->begin_step();
         add(take_part(m_part.take(k), dt / substeps, limits), report);
         if (!report.finite) return report;
     }

@@ -4,6 +4,7 @@
 
 #include "collision/ccd/tunnelling.h"
 #include "collision/proximity/limb_overlap.h"
+#include "collision/proximity/obstacle_trees.h"
 #include "gnn/physics/stepper/boundary_part.h"
 #include "gnn/physics/stepper/step_solver.h"
 
@@ -89,7 +90,7 @@ class ClothStepper : public Stepper {
     /// @param start  of whole steps; null: the projected extrapolation
     /// @throws ArgumentError if a setting is out of range
     explicit ClothStepper(const Garment& garment, const ClothStepperSettings& settings = {},
-                          std::shared_ptr<StepStart> start = nullptr);
+                          const std::shared_ptr<StepStart>& start = nullptr);
     /// With a solver of its own. @throws ArgumentError also if it is null
     ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
                  const GuardSettings& guard = {}, int substeps = 1);
@@ -104,8 +105,16 @@ class ClothStepper : public Stepper {
     const std::vector<LimbSet>& ignored_limbs() const override { return m_limbs.ignored(); }
 
     const StepSolver& solver() const { return *m_solver; }
+    /// Hierarchies of obstacles, used by parts of steps and where Boundary::trees is null.
+    const ObstacleTrees& trees() const { return *m_trees; }
 
  private:
+    ClothStepper(const Garment& garment, const ClothStepperSettings& settings,
+                 const std::shared_ptr<StepStart>& start,
+                 const std::shared_ptr<ObstacleTrees>& trees);
+    ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
+                 const GuardSettings& guard, int substeps, std::shared_ptr<ObstacleTrees> trees);
+
     struct Lag {
         int substeps = 0;
         Points x;  ///< |V| x 3 (m): what was returned last
@@ -128,6 +137,7 @@ class ClothStepper : public Stepper {
     GuardSettings m_guard;
     int m_substeps;
     std::unique_ptr<StepSolver> m_solver;
+    std::shared_ptr<ObstacleTrees> m_trees;
     LimbOverlap m_limbs;
     TunnellingDetector m_detector;
     BoundaryPart m_part;

@@ -31,7 +31,7 @@ std::string suffix_of(const IterationLimits& limits, char mark) {
 }  // namespace
 
 StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
-                       std::shared_ptr<StepStart> start)
+                       std::shared_ptr<StepStart> start, std::shared_ptr<ObstacleTrees> trees)
     : m_garment(&garment),
       m_settings(checked(settings)),
       m_start(std::move(start)),
@@ -39,7 +39,7 @@ StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
       m_time(settings.potential.integrator),
       m_quasi_newton(garment, settings.quasi_newton),
       m_newton(garment, settings.newton),
-      m_proximity(settings.proximity),
+      m_proximity(settings.proximity, std::move(trees)),
       m_ridges(garment),
       m_projection(garment),
       m_self_contact(garment, settings.potential.self_contact) {

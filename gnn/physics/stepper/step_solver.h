@@ -44,9 +44,11 @@ class StepSolver {
  public:
     /// Keeps a reference to `garment`.
     /// @param start  of whole steps; null: the guess
+    /// @param trees  of the obstacles where Boundary::trees is null; null: its own
     /// @throws ArgumentError if a setting is out of range
     StepSolver(const Garment& garment, const StepSettings& settings,
-               std::shared_ptr<StepStart> start = nullptr);
+               std::shared_ptr<StepStart> start = nullptr,
+               std::shared_ptr<ObstacleTrees> trees = nullptr);
     virtual ~StepSolver() = default;
 
     /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with

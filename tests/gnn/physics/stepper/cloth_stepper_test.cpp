@@ -375,6 +375,24 @@ TEST_F(Guard, NothingIsFactorisedInAFrameThatWasPreparedFor) {
     }
 }
 
+TEST_F(Guard, OneHierarchyOfAnObstacleServesAStepAndItsParts) {
+    ClothStepper stepper(m_garment, guarded());
+    int parts = 0;
+    for (const double end : {-0.01, 0.13, 0.16}) {
+        m_boundary.obstacles = {as_mesh(plate(end - 0.14, end))};
+        static const auto faces = m_boundary.obstacles[0].faces;
+        m_boundary.obstacles[0].faces = faces;
+        const StepReport report = stepper.step(m_boundary, dt, m_state);
+        ASSERT_TRUE(report.finite);
+        parts += report.substeps;
+    }
+    ASSERT_GE(parts, 6);
+    const ObstacleTrees::Counts counts = stepper.trees().counts();
+    EXPECT_EQ(counts.builds, 2) << "one for its surface, one for its motion";
+    EXPECT_LE(counts.surface_fits, parts + 3) << "the end of a part is the start of the next";
+    EXPECT_LE(counts.motion_fits, parts);
+}
+
 TEST_F(Guard, WithoutASolverItIsRefused) {
     EXPECT_THROW(ClothStepper(m_garment, std::unique_ptr<StepSolver>()), ArgumentError);
 }
