@@ -61,7 +61,8 @@ void meshes_of_the_program() {
     std::vector<Garment> layers(3, garment);
     const MergedGarments merged = merge_garments("layers", layers);
     layers.clear();
-    expect(merged.garment.vertex_count() == 12 && merged.first_vertex.back() == 12, "merged layers");
+    expect(merged.garment.vertex_count() == 12 && merged.first_vertex.back() == 12,
+           "merged layers");
     expect(garment.inverse_masses()(2) == 0 && garment.inverse_masses()(0) > 0, "pins");
     Garment moved = std::move(garment);
     expect(std::abs(moved.face_areas().sum() - 4) < 1e-12, "areas of a garment that was moved");
@@ -79,7 +80,8 @@ void meshes_of_files() {
     TriMesh box = square(-1);
     Points raised = box.vertices.array() + 0.5;
     Points fitted = fit_garment(sheet, box, raised);
-    expect(fitted.rows() == sheet.vertices.rows() && fitted.allFinite(), "a garment that was fitted");
+    expect(fitted.rows() == sheet.vertices.rows() && fitted.allFinite(),
+           "a garment that was fitted");
     fitted.conservativeResize(3, 3);
 }
 
