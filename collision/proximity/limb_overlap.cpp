@@ -224,7 +224,7 @@ void LimbOverlap::select_inside_candidates(LimbSet limb, const std::vector<char>
     for (size_t i = 0; i < m_ignored.size(); ++i) {
         if ((m_ignored[i] & limb) == 0 || (i < left_out.size() && left_out[i])) continue;
         m_rows.push_back(static_cast<int>(i));
-        m_without[i] = ~(joined(limb) & ~m_home[i]);
+        m_without[i] = ~(joined(limb) & ~m_own[i]);
     }
 }
 

@@ -6,7 +6,7 @@
 #include "collision/proximity/obstacle_trees.h"
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
-#include "tests/bullet_ext/test_meshes.h"
+#include "tests/test_meshes.h"
 
 using namespace cloth;
 using namespace cloth::test;
