@@ -82,7 +82,8 @@ Validation, single steps and rollouts in the stepper as it is used:
   --validation-clips A,B,...  motions (those of the shared data folder, else 01_01)
   --validation-frames N  of a rollout (90)
   --validation-sheet N  vertices of the sheets; 0: none (1000)
-  --references DIR    where references are kept (DIR/references)
+  --references DIR    where the rollouts' references are kept, which take minutes to compute
+                      (references in --out)
 )";
 
 struct Options {

@@ -11,6 +11,7 @@
 #include "data/core/check_range.h"
 #include "data/core/paths.h"
 #include "gnn/model/learned_cloth.h"
+#include "gnn/physics/stepper/newton_stepper.h"
 #include "gnn/train/reference_file.h"
 #include "gnn/train/sheet_world.h"
 
@@ -123,11 +124,10 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
     if (load_reference(file, garment.vertex_count(), m_settings.frames, scene.reference,
                        scene.start_velocities))
         return true;
-    QuasiNewtonSettings solver;
-    solver.iterations = m_settings.reference_iterations;
-    solver.least_iterations = std::min(20, solver.iterations);
-    solver.least_gain = 1e-4;
-    const auto stepper = make_physics_cloth(garment, solver, limbs_alone());
+    NewtonStepperSettings solver;
+    solver.max_iterations = m_settings.reference_iterations;
+    GuardedStepper stepper(garment, std::make_unique<NewtonStepper>(garment, solver),
+                           limbs_alone());
     ClothState state = start;
     std::vector<Points> trajectory;
     for (int frame = 0; frame < scene.lead_in + m_settings.frames; ++frame) {
@@ -136,7 +136,7 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
             trajectory = {state.x};
             scene.start_velocities = state.v;
         }
-        stepper->step(scene.boundary(state.time), scene.scene->dt(), state);
+        stepper.step(scene.boundary(state.time), scene.scene->dt(), state);
         if (frame >= scene.lead_in) trajectory.push_back(state.x);
     }
     scene.reference = std::move(trajectory);
