@@ -135,7 +135,9 @@ Options parse(int count, char** arguments) {
     add("--validation-frames", settings.rollouts.frames, "N", "of a rollout (90)", validation);
     add("--validation-sheet", settings.rollouts.sheet_vertices, "N",
         "vertices of the sheets; 0: none (1000)", validation);
-    add("--references", settings.references, "DIR", "where references are kept (DIR/references)",
+    add("--references", settings.references, "DIR",
+        "where the rollouts' references are kept, which take minutes to compute (references in "
+        "--out)",
         validation);
     try {
         app.parse(count, arguments);

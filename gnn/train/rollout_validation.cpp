@@ -116,13 +116,11 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
     if (load_reference(file, garment.vertex_count(), m_settings.frames, scene.reference,
                        scene.start_velocities))
         return true;
-    ClothSettings solver;
-    IterationLimits& limits = solver.step.quasi_newton;
-    limits.iterations = m_settings.reference_iterations;
-    limits.least_iterations = std::min(20, limits.iterations);
-    limits.least_gain = 1e-4;
+    NewtonSettings newton;
+    newton.max_iterations = m_settings.reference_iterations;
+    ClothStepperSettings solver = ClothStepperSettings::reference(newton);
     solver.guard = GuardSettings::limbs_alone();
-    const auto stepper = make_cloth(garment, solver);
+    ClothStepper stepper(garment, solver);
     ClothState state = start;
     std::vector<Points> trajectory;
     for (int frame = 0; frame < scene.lead_in + m_settings.frames; ++frame) {
@@ -131,7 +129,7 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
             trajectory = {state.x};
             scene.start_velocities = state.v;
         }
-        stepper->step(scene.boundary(state.time), scene.scene->dt(), state);
+        stepper.step(scene.boundary(state.time), scene.scene->dt(), state);
         if (frame >= scene.lead_in) trajectory.push_back(state.x);
     }
     scene.reference = std::move(trajectory);

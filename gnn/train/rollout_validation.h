@@ -23,9 +23,9 @@ struct RolloutSettings {
     int frames = 90;            ///< after the lead-in, 1 to 10,000
     std::vector<int> iterations = {0, 3, 5};  ///< quasi-Newton iterations after the network, 0 to
                                               ///< 100 each; one rollout for each
-    int reference_iterations = 300;  ///< at most, of a step of the reference, 1 to 1000; they end
-                                     ///< when five of them gain less than 0.1 mm
-    int threads = 1;                 ///< of network and nearest points, 1 to 256
+    int reference_iterations = 60;  ///< of Newton's method in a step of the reference at most, 1 to
+                                    ///< 1000
+    int threads = 1;                ///< of network and nearest points, 1 to 256
 
     /// @throws ArgumentError if a value is out of its range
     void check() const;
@@ -54,8 +54,8 @@ struct RolloutResult {
 /// through each other. Steps are never cut into sub-steps of the solver, which would hide what the
 /// network does.
 ///
-/// The reference is the same energy at the same time step, minimised much further. It is computed
-/// when it is first needed, and kept in a folder for the next run.
+/// The reference minimises the same energy at the same time step by Newton's method. It is computed
+/// when it is first needed, which takes minutes, and kept in a folder for the next run.
 class RolloutValidation {
  public:
     /// @param folder  of the references
