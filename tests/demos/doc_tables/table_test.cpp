@@ -32,7 +32,9 @@ const char* const known = R"("commit": "0123456789", "machine": "a loom", "threa
 class Shop : public ::testing::Test {
  protected:
     void SetUp() override {
-        root = fs::path(::testing::TempDir()) / "doc_tables_shop";
+        root = fs::path(::testing::TempDir()) /
+               (std::string("doc_tables_") +
+                ::testing::UnitTest::GetInstance()->current_test_info()->name());
         fs::remove_all(root);
         fs::create_directories(root / "data");
         fs::create_directories(root / "guide");

@@ -20,7 +20,9 @@ std::string text_of(const std::string& path) {
 
 class MetricsFiles : public testing::Test {
  protected:
-    const std::string m_path = testing::TempDir() + "metrics_file_test.csv";
+    const std::string m_path = testing::TempDir() + "metrics_file_" +
+                               testing::UnitTest::GetInstance()->current_test_info()->name() +
+                               ".csv";
     MetricsFile m_file{m_path, {"iteration", "loss"}};
 };
 

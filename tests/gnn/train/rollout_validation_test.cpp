@@ -48,7 +48,8 @@ class Rollouts : public testing::Test {
     }
 
     const SceneFactory m_factory{tiny_model(), sheets_only(), 1};
-    const std::string m_folder = testing::TempDir() + "rollout_validation_test";
+    const std::string m_folder = testing::TempDir() + "rollout_validation_" +
+                                 testing::UnitTest::GetInstance()->current_test_info()->name();
     const std::atomic<bool> m_go{false}, m_stop{true};
     RolloutSettings m_settings;
 };

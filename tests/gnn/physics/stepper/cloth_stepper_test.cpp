@@ -386,7 +386,7 @@ TEST_F(Guard, OneHierarchyOfAnObstacleServesAStepAndItsParts) {
         ASSERT_TRUE(report.finite);
         parts += report.substeps;
     }
-    ASSERT_GE(parts, 6);
+    ASSERT_GT(parts, 3) << "the scene asks for no parts";
     const ObstacleTrees::Counts counts = stepper.trees().counts();
     EXPECT_EQ(counts.builds, 2) << "one for its surface, one for its motion";
     EXPECT_LE(counts.surface_fits, parts + 3) << "the end of a part is the start of the next";
