@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-const std::shared_ptr<Predictor>& checked(const std::shared_ptr<Predictor>& predictor) {
+std::shared_ptr<Predictor> checked(std::shared_ptr<Predictor> predictor) {
     if (!predictor)
         throw ArgumentError("predictor", "is null", "pass an Engine made of trained weights");
     return predictor;
@@ -18,7 +18,7 @@ const std::shared_ptr<Predictor>& checked(const std::shared_ptr<Predictor>& pred
 }  // namespace
 
 NetworkStart::NetworkStart(const Garment& garment, std::shared_ptr<Predictor> predictor)
-    : m_predictor(checked(predictor)),
+    : m_predictor(checked(std::move(predictor))),
       m_graph(build_cloth_graph(garment, m_predictor->config().graph_settings())),
       m_builder(garment, m_graph, m_predictor->config().features) {
 }
