@@ -154,7 +154,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
     m_part.begin(*m_garment, state, boundary, substeps);
     for (int k = 0; k < substeps; ++k) {
-        m_trees->begin_step();
+        if (k > 0) m_trees->begin_step();
         add(take_part(m_part.take(k), dt / substeps, limits), report);
         if (!report.finite) return report;
     }
