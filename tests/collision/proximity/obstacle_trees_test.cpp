@@ -13,25 +13,16 @@
 #include "collision/proximity/mesh_surface.h"
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
+#include "tests/collision/proximity/same_bits.h"
 #include "tests/test_meshes.h"
 
 namespace cloth {
 namespace {
 
 using namespace test;
+using test::expect_same_bits;  // beside that of Answers
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-void expect_same_bits(const SurfaceContacts& a, const SurfaceContacts& b) {
-    EXPECT_EQ(a.obstacle, b.obstacle);
-    EXPECT_EQ(a.face, b.face);
-    EXPECT_EQ(a.barycentric, b.barycentric);
-    EXPECT_EQ(a.point0, b.point0);
-    EXPECT_EQ(a.point1, b.point1);
-    EXPECT_EQ(a.normal0, b.normal0);
-    EXPECT_EQ(a.normal1, b.normal1);
-    EXPECT_EQ(a.distance, b.distance);
-}
 
 /// A rough body of two limbs that turns and swells: each step starts as the last one ended.
 class RoughBody {
