@@ -111,6 +111,13 @@ void run_stage(const CompareOptions& options, const std::string& stage) {
         throw std::runtime_error("the process for " + stage + " failed; see above");
 }
 
+/// A wrong name of a solver fails at once, and not after the others have run.
+void check_names(const CompareOptions& options) {
+    const BodyScene scene(scene_settings(options));
+    for (const std::string& solver : options.solvers)
+        make_solver(solver, scene, solver_settings(options));
+}
+
 json scene_json(const CompareOptions& options, const BodyScene& scene) {
     return {{"garment", options.garment},
             {"vertices", scene.garment().vertex_count()},
@@ -124,6 +131,7 @@ json scene_json(const CompareOptions& options, const BodyScene& scene) {
 }
 
 void compare(const CompareOptions& options) {
+    check_names(options);
     prepare_work_folder(options);
     for (const char* stage : {"settle", "fine", "reference"}) run_stage(options, stage);
     for (const std::string& solver : options.solvers) run_stage(options, solver);
