@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
 #include "gnn/physics/stepper/relative_motion.h"
@@ -356,6 +358,36 @@ TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
     EXPECT_FALSE(stepper.step(m_boundary, dt, m_state).finite);
     EXPECT_EQ(m_state.x, before.x);
     EXPECT_EQ(m_state.v, before.v);
+}
+
+/// Parts that do nothing but spoil the boundary of the whole step, where the first part has begun.
+class Spoiling : public StepSolver {
+ public:
+    Spoiling(const Garment& garment, Boundary& boundary)
+        : StepSolver(garment, {}), m_boundary(&boundary) {}
+    StepReport part(const Boundary&, double h, const IterationLimits&, ClothState& state) override {
+        m_boundary->obstacles[0].friction = std::numeric_limits<double>::quiet_NaN();
+        ++parts;
+        state.time += h;
+        return {};
+    }
+    int parts = 0;
+
+ private:
+    Boundary* m_boundary;
+};
+
+TEST_F(Guard, TheBoundaryIsValidatedOnceForAStepAndItsParts) {
+    m_boundary.obstacles = {ball(-0.3, 1.4)};
+    auto solver = std::make_unique<Spoiling>(m_garment, m_boundary);
+    const Spoiling& seen = *solver;
+    ClothStepper stepper(m_garment, std::move(solver));
+    const StepReport report = stepper.step(m_boundary, dt, m_state);
+    EXPECT_TRUE(report.finite);
+    EXPECT_EQ(report.substeps, 16);
+    EXPECT_EQ(seen.parts, 16) << "a part that looks at the boundary again refuses it";
+    EXPECT_FALSE(stepper.step(m_boundary, dt, m_state).finite) << "as the next step does";
+    EXPECT_EQ(seen.parts, 16);
 }
 
 TEST_F(Guard, NothingIsFactorisedInAFrameThatWasPreparedFor) {
