@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <utility>
 
 #include "collision/proximity/obstacle_trees.h"
@@ -285,10 +284,13 @@ std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const
     return solids;
 }
 
-double NearSolid::distance(const Vec3& point, double radius) const {
+std::optional<double> NearSolid::distance(const Vec3& point, double radius) const {
     const Vec3 local = inverse * point;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const PartDistance& part : *parts) nearest = std::min(nearest, part.at(local, radius));
+    std::optional<double> nearest;
+    for (const PartDistance& part : *parts) {
+        const std::optional<double> here = part.at(local, radius);
+        if (here && (!nearest || *here < *nearest)) nearest = here;
+    }
     return nearest;
 }
 
@@ -297,10 +299,12 @@ Vec3 NearSolid::outward(const Vec3& point, double radius) const {
     Vec3 gradient;
     for (int c = 0; c < 3; ++c) {
         const Vec3 step = kStep * Vec3::Unit(c);
-        gradient[c] =
-            distance(point + step, radius + kStep) - distance(point - step, radius + kStep);
+        const std::optional<double> ahead = distance(point + step, radius + kStep);
+        const std::optional<double> behind = distance(point - step, radius + kStep);
+        if (!ahead || !behind) return Vec3::Zero();
+        gradient[c] = *ahead - *behind;
     }
-    return gradient.allFinite() ? Vec3(gradient.stableNormalized()) : Vec3(Vec3::Zero());
+    return gradient.stableNormalized();
 }
 
 std::vector<std::string> BulletObstacles::takeMessages() {

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,8 @@ struct NearSolid {
     Pose inverse = Pose::Identity();  ///< from the world to the body, where asked for
     const std::vector<PartDistance>* parts = nullptr;  ///< of the shape; valid in this world step
 
-    /// Signed distance (m) of a point of the world; +inf if it is farther than `radius`.
-    double distance(const Vec3& point, double radius) const;
+    /// Signed distance (m) of a point of the world; none if it is farther than `radius`.
+    std::optional<double> distance(const Vec3& point, double radius) const;
     /// Direction away from the solid at a point within `radius` of it (unit vector, or zero).
     Vec3 outward(const Vec3& point, double radius) const;
 };

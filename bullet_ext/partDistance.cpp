@@ -1,7 +1,6 @@
 #include "bullet_ext/partDistance.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "data/core/errors.h"
@@ -58,17 +57,16 @@ PartDistance::PartDistance(const ShapePart& part) : m_inverse(part.frame.inverse
     m_mesh = distanceTo(part.vertices, *part.faces);
 }
 
-double PartDistance::at(const Vec3& point, double radius) const {
-    constexpr double far = std::numeric_limits<double>::infinity();
+std::optional<double> PartDistance::at(const Vec3& point, double radius) const {
     if (m_primitive.shape != ObstacleShape::mesh) {
         const double distance = closest_on_primitive(m_primitive, m_inverse * point).distance;
-        return distance <= radius ? distance : far;
+        return distance <= radius ? std::optional(distance) : std::nullopt;
     }
     if (!m_mesh || (point.array() < m_low.array() - radius).any() ||
         (point.array() > m_high.array() + radius).any())
-        return far;
+        return std::nullopt;
     const auto nearest = m_mesh->nearest_within(radius, point);
-    return nearest ? nearest->distance : far;
+    return nearest ? std::optional(nearest->distance) : std::nullopt;
 }
 
 }  // namespace cloth

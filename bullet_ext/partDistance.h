@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "bullet_ext/bulletShapes.h"
@@ -14,9 +15,9 @@ class PartDistance {
  public:
     explicit PartDistance(const ShapePart& part);
 
-    /// Distance (m, negative inside) of a point in the frame of the whole shape; +inf if it is
+    /// Distance (m, negative inside) of a point in the frame of the whole shape; none if it is
     /// farther than `radius`.
-    double at(const Vec3& point, double radius) const;
+    std::optional<double> at(const Vec3& point, double radius) const;
 
  private:
     Obstacle m_primitive;  ///< of a mesh only the shape counts

@@ -107,11 +107,11 @@ void TwoWayCoupling::findHolders(const ClothStep& step) {
     const Points& x = step.to.x;
     const auto touch = [&](const NearSolid& obstacle, const Vec3& point,
                            std::initializer_list<int> nodes) {
-        const double distance = obstacle.distance(point, kTouch);
-        if (!(distance <= kTouch)) return;
+        const std::optional<double> distance = obstacle.distance(point, kTouch);
+        if (!distance) return;
         for (int i : nodes)
-            if (distance < m_distance[static_cast<size_t>(i)]) {
-                m_distance[static_cast<size_t>(i)] = distance;
+            if (*distance < m_distance[static_cast<size_t>(i)]) {
+                m_distance[static_cast<size_t>(i)] = *distance;
                 m_holder[static_cast<size_t>(i)] = obstacle.body;
                 m_held[static_cast<size_t>(i)] = 1;
                 m_touch.row(i) = point;
@@ -177,7 +177,7 @@ void TwoWayCoupling::closeSides(const btRigidBody& body, bool all, Account& acco
 bool TwoWayCoupling::isPinched(const ClothStep& step, int node, const NearSolid& holder) const {
     const Vec3 place = m_touch.row(node);
     for (const NearSolid& solid : step.near)
-        if (solid.body != holder.body && solid.distance(place, kPinch) <= kPinch &&
+        if (solid.body != holder.body && solid.distance(place, kPinch) &&
             solid.outward(place, kPinch).dot(holder.outward(place, kPinch)) < -0.1)
             return true;
     return false;

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <map>
+#include <utility>
 
 #include "collision/ccd/fcl_sweep.h"
 #include "collision/ccd/primitive_sweep.h"
@@ -57,9 +57,10 @@ bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corn
     return true;
 }
 
-/// -1: none, such as of a place that is not on a face.
-int limb_of(const std::vector<std::uint8_t>* limbs, int face) {
-    return face >= 0 && limbs ? (*limbs)[static_cast<size_t>(face)] : -1;
+/// None where there are none, and for a place that is not on a face.
+std::optional<int> limb_of(const std::vector<std::uint8_t>* limbs, int face) {
+    if (face < 0 || !limbs) return std::nullopt;
+    return (*limbs)[static_cast<size_t>(face)];
 }
 
 /// Equal times, as at a shared edge, go to the lowest face.
@@ -87,14 +88,15 @@ TunnellingDetector::TunnellingDetector(const Garment& garment, std::shared_ptr<O
 
 TunnellingDetector::~TunnellingDetector() = default;
 
-double TunnellingDetector::thinnest() const {
-    std::map<std::array<int, 2>, double> solids;
+std::optional<double> TunnellingDetector::thinnest() const {
+    std::map<std::pair<int, std::optional<int>>, double> solids;
     for (const Tunnelling& solid : m_found) {
         double& thickness = solids[{solid.obstacle, solid.limb}];
         thickness = std::max(thickness, solid.thickness);
     }
-    double thinnest = std::numeric_limits<double>::infinity();
-    for (const auto& [solid, thickness] : solids) thinnest = std::min(thinnest, thickness);
+    std::optional<double> thinnest;
+    for (const auto& [solid, thickness] : solids)
+        thinnest = std::min(thickness, thinnest.value_or(thickness));
     return thinnest;
 }
 
@@ -150,8 +152,8 @@ void TunnellingDetector::report(const Crossing& crossing, int obstacle,
     const Place& in = crossing.in;
     const Place& out = crossing.out;
     if (!in.known || !out.known || !(in.normal.dot(out.normal) < 0.0)) return;
-    const int limb = limb_of(limbs, in.face), out_limb = limb_of(limbs, out.face);
-    if (limb != out_limb && out_limb >= 0) return;
+    const std::optional<int> limb = limb_of(limbs, in.face), out_limb = limb_of(limbs, out.face);
+    if (out_limb && limb != out_limb) return;
     const double thickness = (in.point - out.point).norm();
     if (thickness >= least_thickness)
         m_found.push_back({crossing.point, obstacle, limb, thickness});

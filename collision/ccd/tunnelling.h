@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "collision/geometry/motion_tree.h"
@@ -12,10 +13,10 @@ namespace cloth {
 
 /// A point of a garment's surface that went through a solid.
 struct Tunnelling {
-    int point = -1;          ///< a vertex, or |V| + a sample (see SurfaceSamples)
-    int obstacle = -1;       ///< index into Boundary::obstacles
-    int limb = -1;           ///< of that obstacle, if it has limbs
-    double thickness = 0.0;  ///< from where it went in to where it came out, at t + dt (m)
+    int point = -1;           ///< a vertex, or |V| + a sample (see SurfaceSamples)
+    int obstacle = -1;        ///< index into Boundary::obstacles
+    std::optional<int> limb;  ///< of that obstacle; none: it has no limbs
+    double thickness = 0.0;   ///< from where it went in to where it came out, at t + dt (m)
 };
 
 /// Continuous collision detection: what a garment went through between two frames, although it is
@@ -54,8 +55,8 @@ class TunnellingDetector {
     const std::vector<Tunnelling>& found() const { return m_found; }
 
     /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
-    /// as thick as the longest way through it. +inf: there is none.
-    double thinnest() const;
+    /// as thick as the longest way through it; none: nothing was gone through.
+    std::optional<double> thinnest() const;
 
  private:
     struct Crossing;

@@ -147,6 +147,31 @@ TEST(BulletObstacles, DynamicBodiesAreObstaclesToo) {
     EXPECT_NEAR(scene.end().y(), -0.0981, 1e-5);
 }
 
+TEST(NearSolid, BeyondTheRadiusThereIsNoDistanceAndNoWayOut) {
+    btSphereShape sphere(0.1f);
+    const btConvexHullShape cube = [] {
+        btConvexHullShape hull;
+        for (int i = 0; i < 8; ++i)
+            hull.addPoint({i & 1 ? 0.1f : -0.1f, i & 2 ? 0.1f : -0.1f, i & 4 ? 0.1f : -0.1f});
+        return hull;
+    }();
+    for (const btCollisionShape* shape : {static_cast<const btCollisionShape*>(&sphere),
+                                          static_cast<const btCollisionShape*>(&cube)}) {
+        std::vector<PartDistance> parts;
+        for (const ShapePart& part : partsOfShape(*shape)) parts.emplace_back(part);
+        NearSolid solid;
+        solid.parts = &parts;
+        const Vec3 near(0, 0.103, 0), inside(0, 0.09, 0), far(0, 0.106, 0);
+        EXPECT_NEAR(solid.distance(near, 5e-3).value(), 0.003, 1e-7);
+        EXPECT_NEAR(solid.distance(inside, 0.02).value(), -0.01, 1e-7);
+        EXPECT_LT((solid.outward(near, 5e-3) - Vec3::UnitY()).norm(), 1e-6);
+        EXPECT_FALSE(solid.distance(far, 5e-3));
+        EXPECT_EQ(solid.outward(far, 5e-3), Vec3(Vec3::Zero()));
+        parts.clear();
+        EXPECT_FALSE(solid.distance(near, 5e-3)) << "a shape without surface is nowhere";
+    }
+}
+
 TEST(BulletObstacles, RemovedAndReshapedBodiesAreFollowed) {
     Scene scene;
     btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {0, 0, 0});

@@ -1,7 +1,6 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "data/core/check_range.h"
@@ -182,8 +181,7 @@ void ClothStepper::search(const Boundary& boundary, const Points& x0, const Poin
                           StepReport& report) {
     Stopwatch watch;
     m_detector.find(boundary, x0, x1, 0);
-    const double thinnest = m_detector.thinnest();
-    if (std::isfinite(thinnest)) report.tunnelled = thinnest;
+    report.tunnelled = m_detector.thinnest();
     report.times.contact += watch.lap();
 }
 
