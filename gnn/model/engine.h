@@ -36,6 +36,7 @@ class Engine : public Predictor {
     ~Engine() override;
 
     const ModelConfig& config() const override;
+    std::string name() const override { return m_weights->name(); }
     void predict(const ClothGraph& graph, const Features& features, Points& out) override;
 
     EngineMemory memory() const;

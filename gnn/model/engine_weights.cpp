@@ -124,11 +124,12 @@ static std::vector<int> columns_called(const std::string& prefix) {
 
 EngineWeights::EngineWeights(const Weights& weights, Precision precision)
     : m_config(weights.config),
+      m_name(weights.solver_name()),
       m_precision(precision),
       m_relative_columns(columns_called("relative")) {
     m_config.check();
     if (m_config.width % 16 != 0 || m_config.hidden_layers != 2)
-        throw ArgumentError("weights of '" + m_config.variant + "'",
+        throw ArgumentError("weights of '" + m_name + "'",
                             "have width " + std::to_string(m_config.width) + " and " +
                                 std::to_string(m_config.hidden_layers) + " hidden layers",
                             "the engine takes widths that are multiples of 16 and two hidden "

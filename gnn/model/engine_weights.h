@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "gnn/model/message_block.h"
@@ -42,6 +43,7 @@ class EngineWeights {
     };
 
     const ModelConfig& config() const { return m_config; }
+    const std::string& name() const { return m_name; }  ///< Weights::solver_name()
     Precision precision() const { return m_precision; }
     const Encoder& node_encoder() const { return m_node; }
     const Encoder& edge_encoder() const { return m_edge; }
@@ -61,6 +63,7 @@ class EngineWeights {
     class Packer;
 
     ModelConfig m_config;
+    std::string m_name;
     Precision m_precision;
     AlignedBuffer m_numbers;
     AlignedHalves m_rounded;  ///< panels in bfloat16

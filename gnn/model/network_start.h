@@ -15,8 +15,8 @@ class NetworkStart : public StepStart {
     /// Keeps a reference to `garment`. @throws ArgumentError if the predictor is null
     NetworkStart(const Garment& garment, std::shared_ptr<Predictor> predictor);
 
-    /// The network's variant, such as "fast".
-    std::string name() const override { return m_predictor->config().variant; }
+    /// The network's, such as "small".
+    std::string name() const override { return m_predictor->name(); }
     double fixed_dt() const override { return m_predictor->config().dt; }
     bool predict(const ClothState& state, const Boundary& boundary,
                  const IncrementalPotential& potential, const Points& guess,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "gnn/graph/features.h"
 #include "gnn/model/model_config.h"
 
@@ -11,6 +13,9 @@ class Predictor {
     virtual ~Predictor() = default;
 
     virtual const ModelConfig& config() const = 0;
+
+    /// What solvers that use it are called.
+    virtual std::string name() const { return config().variant; }
 
     /// One evaluation. The predicted position of vertex i is base_i + scale * out_i.
     /// @param graph  of the garment, built with config().graph_settings()

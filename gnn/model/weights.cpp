@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -158,6 +159,7 @@ Weights Weights::load(const std::string& file) {
                             std::to_string(ModelConfig::format_version),
                         train_again);
     Weights weights;
+    weights.called = std::filesystem::path(file).stem().string();
     weights.config = ModelConfig::from_json(metadata(raw, file, "config"), file);
     for (const auto& [name, entry] : raw.header.items())
         if (name != "__metadata__")

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct WeightTensor {
 struct Weights {
     ModelConfig config;
     std::map<std::string, WeightTensor> tensors;  ///< parameter_shapes() and statistics_shapes()
+    std::optional<std::string> called;  ///< load() takes the name of the file, without folder and
+                                        ///< ending; none: made in memory
 
     /// @throws LoadError naming file, tensor and reason: truncated, another version, a tensor that
     ///         is missing, unknown, misshaped or holds a number that is not finite, or a deviation
@@ -36,6 +39,9 @@ struct Weights {
 
     /// @throws ArgumentError if there is no such tensor
     const WeightTensor& tensor(const std::string& name) const;
+
+    /// What solvers that use it are called: as the file, else as the variant.
+    std::string solver_name() const { return called.value_or(config.variant); }
 };
 
 }  // namespace cloth

@@ -12,12 +12,13 @@ namespace {
 class TorchPredictor : public Predictor {
  public:
     TorchPredictor(const Weights& weights, torch::Device device)
-        : m_network(weights.config, device, 0) {
+        : m_network(weights.config, device, 0), m_name(weights.solver_name()) {
         m_network.import_weights(weights);
         m_network.use_plain_operations();
     }
 
     const ModelConfig& config() const override { return m_network.config(); }
+    std::string name() const override { return m_name; }
 
     void predict(const ClothGraph& graph, const Features& features, Points& out) override {
         try {
@@ -34,6 +35,7 @@ class TorchPredictor : public Predictor {
 
  private:
     Network m_network;
+    std::string m_name;
 };
 
 }  // namespace

@@ -117,9 +117,11 @@ TEST_F(GuideSnippets, Solvers) {
         settings.substeps = 40;
         return std::make_unique<cloth::XpbdStepper>(garment, settings);
     };
-    // Learned steppers are named after the variant of their network.
-    const std::pair<cloth::StepperFactory, const char*> solvers[] = {
-        {small, "fast"}, {physics, "quasi-newton"}, {bdf2, "quasi-newton-bdf2"}, {xpbd, "xpbd-40"}};
+    // Learned steppers are named after the file of their network.
+    const std::pair<cloth::StepperFactory, const char*> solvers[] = {{small, "small"},
+                                                                     {physics, "quasi-newton"},
+                                                                     {bdf2, "quasi-newton-bdf2"},
+                                                                     {xpbd, "xpbd-40"}};
     for (const auto& [factory, name] : solvers) {
         solver.attach(body, cloth::Fabric::soft_cotton(), factory);
         EXPECT_EQ(solver.stepperOf(body)->name(), name);

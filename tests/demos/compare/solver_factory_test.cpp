@@ -40,6 +40,13 @@ TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
 }
 
+TEST(SolverFactory, NetworksAreCalledWhatTheUserChose) {
+    const FreeSheet scene;
+    for (const std::string name : {"small", "small+3", "fast", "fast+0"})
+        EXPECT_EQ(make_solver(name, scene, {})->name(), name);
+    EXPECT_EQ(make_solver("bf16-small", scene, {})->name(), "small");
+}
+
 TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {
     const NetworkName plain("fast_16"), torch("torch-fast+0"), rounded("bf16-fast+12");
     EXPECT_TRUE(plain.as_shipped && !plain.torch && !plain.bfloat16);

@@ -6,6 +6,7 @@
 
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
+#include "tests/gnn/model/random_weights.h"
 
 namespace cloth {
 namespace {
@@ -23,6 +24,13 @@ class ConstantPredictor : public Predictor {
     ModelConfig m_config = ModelConfig::variant_named("fast");
     Vec3 m_answer;
 };
+
+ModelConfig small_config() {
+    ModelConfig config = ModelConfig::variant_named("fast");
+    config.width = 16;
+    config.steps = 2;
+    return config;
+}
 
 class NetworkStep : public testing::Test {
  protected:
@@ -175,6 +183,19 @@ TEST_F(NetworkStep, IsNamedAfterVariantAndIterations) {
     IterationLimits backwards = IterationLimits::controlled();
     backwards.least_gain = -1e-3;
     EXPECT_THROW(made(Vec3::Zero(), backwards), ArgumentError);
+}
+
+TEST_F(NetworkStep, IsNamedAfterItsWeightsWhereTheyHaveAName) {
+    ClothSettings settings;
+    settings.step.quasi_newton = IterationLimits::exactly(2);
+    Weights weights = test::random_weights(small_config());
+    const auto name = [&] {
+        settings.weights = std::make_shared<const EngineWeights>(weights);
+        return make_cloth(m_garment, settings)->name();
+    };
+    EXPECT_EQ(name(), "fast+2");
+    weights.called = "small";
+    EXPECT_EQ(name(), "small+2");
 }
 
 TEST_F(NetworkStep, EnergiesOfGuessAndPredictionComeFromTheFeatures) {

@@ -72,6 +72,19 @@ TEST_F(WeightsFile, ReadsWhatWasWritten) {
     EXPECT_FALSE(std::filesystem::exists(m_file + ".tmp"));
 }
 
+TEST_F(WeightsFile, NamesWhatWasLoadedAfterItself) {
+    EXPECT_FALSE(small_weights().called);
+    EXPECT_EQ(small_weights().solver_name(), "fast");
+    Weights loaded = Weights::load(m_file);
+    EXPECT_EQ(loaded.called, "weights_NamesWhatWasLoadedAfterItself");
+    EXPECT_EQ(loaded.solver_name(), loaded.called);
+    loaded.called = "renamed";
+    loaded.save(m_file);
+    std::ifstream in(m_file, std::ios::binary);
+    EXPECT_EQ(m_bytes, std::string(std::istreambuf_iterator<char>(in), {}))
+        << "a file's name is no part of what is in it";
+}
+
 TEST_F(WeightsFile, RefusesEveryTruncation) {
     for (size_t length = 0; length < m_bytes.size(); length += 1 + m_bytes.size() / 97) {
         write(m_bytes.substr(0, length));

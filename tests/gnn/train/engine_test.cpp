@@ -108,6 +108,15 @@ TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
     EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
 }
 
+TEST(Engine, HasTheNameOfItsWeightsAsLibTorchHas) {
+    Weights weights = *random_weights(small_config("fast"));
+    EXPECT_EQ(Engine(weights).name(), "fast");
+    EXPECT_EQ(make_torch_predictor(weights)->name(), "fast");
+    weights.called = "small";
+    EXPECT_EQ(Engine(weights).name(), "small");
+    EXPECT_EQ(make_torch_predictor(weights)->name(), "small");
+}
+
 TEST(Engine, FollowsAChangeOfGarment) {
     const ModelConfig config = small_config("fast");
     const auto weights = random_weights(config);
