@@ -19,12 +19,35 @@ namespace cloth {
 namespace {
 
 constexpr double no_distance = std::numeric_limits<double>::infinity();
-constexpr int forget_after = 64;     // queries
-constexpr size_t max_hint_sets = 4;  // sets of query points of different size
-constexpr int min_parallel = 512;    // points; fewer are not worth waking threads
+constexpr int forget_after = 64;       // queries
+constexpr size_t max_answer_sets = 4;  // sets of query points of different size
+constexpr int min_parallel = 512;      // points; fewer are not worth waking threads
 
-/// The closest face of each point in the last query of as many points.
-using Hints = std::vector<int>;
+/// What a query point was told last.
+struct Answer {
+    SurfaceHit hit;
+    Vec3 x = Vec3::Zero();  ///< the point (m)
+    double radius = -1.0;   ///< of the search (m); negative: the surface has moved since
+    LimbSet ignored = 0;
+
+    /// Whether the same question was answered: a search would find the same to the bit.
+    bool is_to(const Vec3& point, double within, LimbSet passed_over) const {
+        return within == radius && x == point && ignored == passed_over;
+    }
+};
+
+/// The answers to the points of the last query of as many points. A step begins with the points
+/// and the surface that the last one ended with: it need not search again.
+struct Answers {
+    std::shared_ptr<const MeshSurface> surface;  ///< held, so that it stays as it is
+    std::vector<Answer> of;
+
+    void begin_query(const std::shared_ptr<const MeshSurface>& asked) {
+        if (asked == surface) return;
+        surface = asked;
+        for (Answer& answer : of) answer.radius = -1.0;
+    }
+};
 
 /// What is remembered of a mesh between queries.
 struct KnownMesh {
@@ -32,7 +55,7 @@ struct KnownMesh {
     std::shared_ptr<const std::vector<std::uint8_t>> limbs;
     int occurrence;  // the same faces may stand in one boundary several times
     long last_seen;
-    std::vector<Hints> hint_sets;  // the latest first
+    std::vector<Answers> answer_sets;  // the latest first
 };
 
 /// One usable obstacle of the boundary, ready for queries.
@@ -40,7 +63,7 @@ struct Target {
     int index;
     const Obstacle* obstacle;
     std::shared_ptr<const MeshSurface> surface;  // null: a primitive
-    int* hints;                                  // mesh: |points|
+    Answers* answers;                            // of a mesh
     Pose to_local;                               // primitive: from the world to its frame
 };
 
@@ -52,16 +75,26 @@ struct Nearest {
     PrimitiveHit on_primitive;
 };
 
-int* hints_for(KnownMesh& mesh, size_t count) {
-    auto& sets = mesh.hint_sets;
+Answers& answers_for(KnownMesh& mesh, size_t count) {
+    auto& sets = mesh.answer_sets;
     auto found = std::find_if(sets.begin(), sets.end(),
-                              [&](const Hints& hints) { return hints.size() == count; });
+                              [&](const Answers& set) { return set.of.size() == count; });
     if (found == sets.end()) {
-        if (sets.size() == max_hint_sets) sets.pop_back();
-        found = sets.insert(sets.end(), Hints(count, -1));
+        if (sets.size() == max_answer_sets) sets.pop_back();
+        found = sets.insert(sets.end(), Answers{nullptr, std::vector<Answer>(count)});
     }
     std::rotate(sets.begin(), found, found + 1);
-    return sets.front().data();
+    return sets.front();
+}
+
+/// The nearest point of a mesh; the face that was nearest last is where the search begins.
+const SurfaceHit& nearest_on_mesh(const Target& target, const Vec3& x, size_t point, double radius,
+                                  LimbSet ignored, ClosestFaceTree::Stack& stack) {
+    Answer& answer = target.answers->of[point];
+    if (answer.is_to(x, radius, ignored)) return answer.hit;
+    const int hint = answer.hit.face;
+    answer = {target.surface->closest(x, radius, hint, stack, ignored), x, radius, ignored};
+    return answer.hit;
 }
 
 Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
@@ -70,11 +103,8 @@ Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t p
     if (!x.allFinite()) return nearest;
     for (const Target& target : targets) {
         if (target.surface) {
-            const SurfaceHit hit =
-                target.surface->closest(x, radius, target.hints[point], stack, ignored);
-            if (hit.face < 0) continue;
-            target.hints[point] = hit.face;
-            if (hit.distance >= nearest.distance) continue;
+            const SurfaceHit& hit = nearest_on_mesh(target, x, point, radius, ignored, stack);
+            if (hit.face < 0 || hit.distance >= nearest.distance) continue;
             nearest.on_mesh = hit;
             nearest.distance = hit.distance;
         } else {
@@ -200,7 +230,8 @@ struct Proximity::Impl {
             if (!target.surface) return;
             KnownMesh& mesh = known(obstacle);
             mesh.last_seen = queries;
-            target.hints = hints_for(mesh, count);
+            target.answers = &answers_for(mesh, count);
+            target.answers->begin_query(target.surface);
         }
         targets.push_back(std::move(target));
     }

@@ -68,9 +68,11 @@ struct Cover {
 ///
 /// The hierarchies are those of Boundary::trees, which all garments of a world share, else its own:
 /// built when the `faces` pointer of a mesh is first seen, and refitted afterwards. The closest
-/// face of the previous query of the same vertex bounds the next one. A mesh that no query has
-/// shown for a while is forgotten. Results depend on the arguments alone: not on earlier queries,
-/// nor on whose hierarchies they are, nor on the number of threads.
+/// face of the previous query of the same vertex bounds the next one. A point that was asked last
+/// for the same surface, as at the start of a step after the end of the one before, is not searched
+/// for again. A mesh that no query has shown for a while is forgotten. Results depend on the
+/// arguments alone: not on earlier queries, nor on whose hierarchies they are, nor on the number of
+/// threads.
 ///
 /// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
 /// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "collision/proximity/proximity.h"
 #include "tests/collision/proximity/same_bits.h"
 #include "tests/test_meshes.h"
@@ -34,6 +36,42 @@ TEST(ProximityCache, HistoryDoesNotShow) {
         warm.query(x, frame(rest, i), by_warm);
         fresh.query(x, frame(rest, i), by_fresh);
         expect_same_bits(by_warm, by_fresh);
+    }
+}
+
+/// As steps ask: at the end of each, for points of which some have moved, and at the start of the
+/// next one, for the same points and the same surface. Limbs and radii change in between.
+TEST(ProximityCache, AnswersThatAreKnownAlreadyAreThoseOfANewSearch) {
+    std::mt19937 random(6);
+    Obstacle rest = mesh_obstacle(roughened(icosphere(3), 0.1, 1));
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(rest.faces->rows()));
+    for (size_t f = 0; f < limbs->size(); ++f) (*limbs)[f] = f % 2;
+    rest.limbs = limbs;
+    Points x = random_points(random, 300, 1.3);
+    const std::vector<int> some = {5, 7, 200};
+    const LimbSet ignored[] = {0, 1, 1, 0, 2, 2, 0};
+    Proximity warm({0.4, 0});
+    SurfaceContacts by_warm;
+    const auto expect_as_new = [&](const Boundary& boundary, StepEnd end, double radius) {
+        SurfaceContacts by_fresh;
+        Proximity({radius, 0}).query(x, boundary, by_fresh, end);
+        expect_same_bits(by_warm, by_fresh);
+    };
+    for (int i = 0; i < 7; ++i) {
+        Boundary boundary = frame(rest, i);
+        boundary.ignored_limbs.assign(300, ignored[i]);
+        warm.query(x, boundary, by_warm);
+        expect_as_new(boundary, StepEnd::start, 0.4);
+        for (int row = i; row < 300; row += 2 + i) x.row(row) += random_point(random, 0.1).transpose();
+        warm.query(x, boundary, by_warm, StepEnd::end);
+        expect_as_new(boundary, StepEnd::end, 0.4);
+        std::vector<int> all(300);
+        std::iota(all.begin(), all.end(), 0);
+        const double radius = i % 2 == 0 ? 0.1 : 0.4;
+        warm.query_rows(x, all, boundary, by_warm, StepEnd::end, {nullptr, radius});
+        expect_as_new(boundary, StepEnd::end, radius);
+        for (const int row : some) x.row(row) += random_point(random, 0.1).transpose();
+        warm.query_rows(x, some, boundary, by_warm, StepEnd::end);
     }
 }
 
