@@ -91,7 +91,8 @@ double SceneProbe::deepest() {
                 if (!(cloth->m_nodes[i].m_im > 0)) continue;
                 const Vec3 local = inverse * toVec3(cloth->m_nodes[i].m_x);
                 for (const PartDistance& part : solid.distances)
-                    depth = std::max(depth, -part.at(local, kReach));
+                    if (const auto distance = part.at(local, kReach))
+                        depth = std::max(depth, -*distance);
             }
     }
     return depth;
