@@ -1,20 +1,33 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "data/core/cloth_state.h"
 #include "data/core/garment.h"
 
 namespace cloth {
 
-/// Rest mesh of a garment of data/assets/garments by its name: tshirt, tshirt_2000, tshirt_1000.
-/// @throws LoadError if there is no such garment or its file is damaged
+/// The committed garments for the default body, by name: tshirt, tshirt_1000, pants and so on.
+/// Where vertices are left out of a name, it has those that its recipe says.
+std::vector<std::string> garment_names();
+
+/// Rest mesh of a garment of data/assets/garments by its name.
+/// @throws LoadError naming the garments there are if there is no such one, or if its file is
+///         damaged
 TriMesh load_garment_mesh(const std::string& name);
 
 /// The garment made of a fabric, without pins.
 ///
-///     const Garment shirt = load_garment("tshirt");
+///     const Garment pants = load_garment("pants");
+///     ClothState state = load_garment_start("pants");
 ///
 /// @throws LoadError as load_garment_mesh(), ArgumentError if the fabric is not usable
 Garment load_garment(const std::string& name, const Fabric& fabric = Fabric::soft_cotton());
+
+/// The garment as the default body wears it in its rest pose, not moving: outside of the body. A
+/// waistband is longer there than at rest; garments without one are worn at rest.
+/// @throws LoadError as load_garment_mesh(), and if the worn shape has other faces
+ClothState load_garment_start(const std::string& name);
 
 }  // namespace cloth

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "collision/proximity/proximity.h"
-#include "data/core/paths.h"
-#include "data/files/mesh_io.h"
+#include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
 
 namespace cloth {
@@ -16,12 +15,19 @@ Fabric fabric_named(const std::string& name) {
     throw UsageError("fabric " + name + ": choose soft or real");
 }
 
-static Garment load_garment(const BodySceneSettings& settings) {
-    const TriMesh rest = load_mesh(asset_path("garments/" + settings.garment + ".obj"));
-    return {settings.garment, rest, fabric_named(settings.fabric)};
+void check_garment_name(const std::string& name) {
+    const std::vector<std::string> names = garment_names();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        throw UsageError("garment " + name + ": choose one of " + join_list(names, ", "));
 }
 
-BodyScene::BodyScene(const BodySceneSettings& settings) : ComparisonScene(load_garment(settings)) {
+static Garment garment_of(const BodySceneSettings& settings) {
+    check_garment_name(settings.garment);
+    return load_garment(settings.garment, fabric_named(settings.fabric));
+}
+
+BodyScene::BodyScene(const BodySceneSettings& settings)
+    : ComparisonScene(garment_of(settings)), m_start(load_garment_start(settings.garment)) {
     const auto body = std::make_shared<const Body>(Body::load_default());
     AnimationSettings animation;
     animation.limbs = settings.limbs;
@@ -55,14 +61,14 @@ std::vector<BodySegment> BodyScene::segments() const {
 void BodyScene::find_covered_skin() {
     Proximity proximity;
     SurfaceContacts contacts;
-    const Points& rest = garment().rest().vertices;
     Boundary boundary;
     boundary.obstacles.push_back(m_body->obstacle(0.0, 0.0));
-    proximity.query(rest, boundary, contacts);
+    proximity.query(m_start.x, boundary, contacts);
     const Faces& faces = *m_body->faces();
-    for (Eigen::Index i = 0; i < rest.rows(); ++i)
+    for (Eigen::Index i = 0; i < m_start.x.rows(); ++i)
         if (contacts.has(i)) m_covered.push_back(faces(contacts.face[static_cast<size_t>(i)], 0));
-    m_rest_offset = rest.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x0);
+    m_start_offset =
+        m_start.x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x0);
 }
 
 Vec3 BodyScene::middle_of_covered(const Points& skin) const {
@@ -74,7 +80,7 @@ Vec3 BodyScene::middle_of_covered(const Points& skin) const {
 std::string BodyScene::loss(const Boundary& boundary, const Points& x) const {
     const Vec3 offset =
         x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x1);
-    return (offset - m_rest_offset).norm() > 0.3 ? "slid off the body" : "";
+    return (offset - m_start_offset).norm() > 0.3 ? "slid off the body" : "";
 }
 
 }  // namespace cloth

@@ -10,8 +10,8 @@ namespace cloth {
 
 /// Which garment, on which motion, for how long.
 struct BodySceneSettings {
-    std::string garment = "tshirt";
-    std::string fabric = "soft";  ///< see fabric_named()
+    std::string garment = "tshirt";  ///< of garment_names()
+    std::string fabric = "soft";     ///< see fabric_named()
     std::string motion = "01_01";
     int frames = 90;            ///< of the motion; 0: all
     int reference_frames = 30;  ///< frames with references; 0: all
@@ -33,11 +33,13 @@ class BodyScene : public ComparisonScene {
     Points skin(double time) const;
 
     Boundary boundary(double t0, double t1) const override;
+    /// As worn on the body's rest pose.
+    ClothState start() const override { return m_start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
     std::vector<BodySegment> segments() const override;
     bool has_limbs() const override { return m_body->limbs() != nullptr; }
     /// "slid off the body": the garment's middle is 0.3 m from the middle of the skin that it
-    /// covers at rest, however the body bends.
+    /// covers at its start, however the body bends.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
@@ -45,10 +47,14 @@ class BodyScene : public ComparisonScene {
     Vec3 middle_of_covered(const Points& skin) const;
 
     std::unique_ptr<AnimatedBody> m_body;
+    ClothState m_start;
     int m_lead_in_frames = 30;
     std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest
-    Vec3 m_rest_offset;          ///< from their middle to the garment's, at rest (m)
+    Vec3 m_start_offset;         ///< from their middle to the garment's, at its start (m)
 };
+
+/// @throws UsageError naming the garments there are if there is no such one
+void check_garment_name(const std::string& name);
 
 /// "soft": SNUG's cotton, 33 N/m; "real": cotton as measured, 5 kN/m.
 /// @throws UsageError for another name

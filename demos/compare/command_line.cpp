@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
+#include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
 
 namespace cloth {
@@ -26,6 +27,18 @@ CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::s
         if (items.empty()) throw CLI::ValidationError(name, "name at least one");
     };
     return app.add_option_function<std::string>(name, read, description)->type_name("A,B,...");
+}
+
+CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string& description) {
+    std::string text = description + ":", line;
+    for (const std::string& name : garment_names()) {
+        if (line.size() + name.size() > 60) {
+            text += "\n" + line;
+            line.clear();
+        }
+        line += (line.empty() ? "" : ", ") + name;
+    }
+    return app.add_option("--garment", garment, text + "\n" + line)->type_name("NAME");
 }
 
 void parse(CLI::App& app, const std::vector<std::string>& arguments) {

@@ -26,6 +26,11 @@ CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value
 CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& items,
                       const std::string& description);
 
+/// The option --garment; its value is not checked here. The description is followed by a list of
+/// the garments there are.
+/// @param garment  kept if the option is not given
+CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string& description);
+
 /// @throws UsageError if the command line is wrong, HelpText if it asks for help
 void parse(CLI::App& app, const std::vector<std::string>& arguments);
 

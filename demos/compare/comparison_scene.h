@@ -32,7 +32,10 @@ class ComparisonScene {
         return boundary(frame * frame_time, (frame + 1) * frame_time);
     }
 
-    /// Frames in which the garment settles from its rest pose; 0: it starts in its rest pose.
+    /// Where the garment is before the lead-in.
+    virtual ClothState start() const { return ClothState::at_rest(m_garment); }
+
+    /// Frames in which the garment settles from its start; 0: it is measured from its start on.
     virtual int lead_in_frames() const { return 0; }
 
     /// Whether the garment keeps off itself; solvers that know nothing of it go without.

@@ -28,9 +28,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
     CLI::App app("compare: solvers of the same cloth on the same moving body, side by side",
                  "compare");
     set_up(app);
-    app.add_option("--garment", options.garment,
-                   "tshirt (4,000 vertices), tshirt_2000, tshirt_1000")
-        ->type_name("NAME");
+    add_garment(app, options.garment, "what the body wears (default tshirt)");
     app.add_option("--motion", options.motion,
                    "01_01, 01_03, Boxing_Toes, a clip's number or a BVH file")
         ->type_name("NAME");
@@ -63,6 +61,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         "A run that was interrupted goes on where it stopped; delete DIR/work to start "
         "afresh.");
     parse(app, arguments);
+    check_garment_name(options.garment);
     options.video = !no_video;
     return options;
 }

@@ -10,7 +10,7 @@ static ClothStepperSettings many_iterations(int iterations, double tolerance) {
 
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress) {
     ClothStepper stepper(scene.garment(), many_iterations(60, 1e-3));
-    ClothState state = ClothState::at_rest(scene.garment());
+    ClothState state = scene.start();
     const double dt = ComparisonScene::frame_time;
     const int steps = scene.lead_in_frames();
     for (int k = 0; k < steps; ++k) {

@@ -4,8 +4,7 @@
 #include <memory>
 
 #include "data/body/body.h"
-#include "data/core/paths.h"
-#include "data/files/mesh_io.h"
+#include "data/files/garment_assets.h"
 #include "demos/hard_cases/case_scenes.h"
 
 namespace cloth {
@@ -30,8 +29,7 @@ Points spun(const Points& rest, double time) {
 
 HardSceneParts body_spin() {
     const auto body = std::make_shared<const Body>(Body::load_default());
-    Garment garment("tshirt_1000", load_mesh(asset_path("garments/tshirt_1000.obj")),
-                    Fabric::soft_cotton());
+    Garment garment = load_garment("tshirt_1000");
     const ClothState start = ClothState::at_rest(garment);
     const auto outside = [body](double t0, double t1) {
         Boundary boundary;

@@ -25,7 +25,7 @@ std::shared_ptr<const BodyScene> whole_motion(const std::string& motion, const s
 /// @param scene_time  of the scene's clock (s), at a time of the case's
 HardSceneParts parts_of(const std::shared_ptr<const BodyScene>& scene,
                         const std::function<double(double)>& scene_time) {
-    HardSceneParts parts{scene->garment(), ClothState::at_rest(scene->garment()),
+    HardSceneParts parts{scene->garment(), scene->start(),
                          [scene, scene_time](double t0, double t1) {
                              return scene->boundary(scene_time(t0), scene_time(t1));
                          }};

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "demos/compare/body_scene.h"
 #include "demos/compare/command_line.h"
 #include "demos/hard_cases/hard_cases.h"
 
@@ -24,9 +25,7 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
              "a garment on a body through these whole motions instead: names,\n"
              "BVH files or folders of them. Stretch may be 1.1 times that of\n"
              "the reference, if it is named first in --steppers");
-    app.add_option("--garment", options.garment,
-                   "for --motions: tshirt_1000 (default), tshirt_2000, tshirt")
-        ->type_name("NAME");
+    add_garment(app, options.garment, "for --motions (default tshirt_1000)");
     app.add_flag("--no-limbs", no_limbs,
                  "for --motions: the body is one surface, and cloth does not pass\n"
                  "through limbs that are inside other limbs (with limbs, depth is\n"
@@ -64,6 +63,7 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
     if (options.cases.empty() && options.motions.empty())
         for (const HardCase& hard : hard_cases()) options.cases.push_back(hard.name);
     for (const std::string& name : options.cases) hard_case(name);
+    check_garment_name(options.garment);
     return options;
 }
 

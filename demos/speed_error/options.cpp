@@ -1,7 +1,9 @@
 #include "demos/speed_error/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
+#include "demos/compare/body_scene.h"
 #include "demos/compare/command_line.h"
 #include "demos/speed_error/scenes.h"
 
@@ -53,6 +55,8 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
                "tshirt (4,000 vertices, on motion 01_01; default),\n"
                "sheet (hangs by two corners, swings down from horizontal),\n"
                "sphere (a sheet falls on a moving sphere), or all");
+    std::string garment = "tshirt";
+    add_garment(app, garment, "instead of the T-shirt of the scene tshirt, which takes its name");
     add_choice(app, "--fabric", options.fabrics, {"soft", "real"}, "both",
                "soft (cotton of 33 N/m; default), real (as measured,\n"
                "5 kN/m), or both");
@@ -83,6 +87,8 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
         ->type_name("DIR");
     app.footer(explanations);
     parse(app, arguments);
+    check_garment_name(garment);
+    std::replace(options.scenes.begin(), options.scenes.end(), std::string("tshirt"), garment);
     return options;
 }
 

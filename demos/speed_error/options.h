@@ -6,7 +6,7 @@
 namespace cloth {
 
 struct SpeedErrorOptions {
-    std::vector<std::string> scenes = {"tshirt"};  ///< of scene_names()
+    std::vector<std::string> scenes = {"tshirt"};  ///< of scene_names(), or garments
     std::vector<std::string> fabrics = {"soft"};   ///< soft, real
     int frames = 30;                               ///< of 1/30 s
     int vertices = 4000;                           ///< of the sheets

@@ -93,15 +93,14 @@ std::vector<std::string> scene_names() {
 std::string scene_description(const std::string& name) {
     if (name == "sheet") return "a level sheet of 1 m, held at two corners, swings down";
     if (name == "sphere") return "a sheet of 1 m falls on a sphere of 0.25 m that moves sideways";
-    return "a T-shirt on a body, motion 01_01";
+    return (name == "tshirt" ? "a T-shirt" : name) + " on a body, motion 01_01";
 }
 
 std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings) {
     if (settings.name == "sheet") return std::make_unique<SheetScene>(settings);
     if (settings.name == "sphere") return std::make_unique<SphereScene>(settings);
-    if (settings.name != "tshirt")
-        throw UsageError("scene " + settings.name + ": choose " + join_list(scene_names(), ", "));
     BodySceneSettings body;
+    body.garment = settings.name;
     body.fabric = settings.fabric;
     body.frames = settings.frames;
     body.reference_frames = settings.frames;

@@ -9,18 +9,19 @@
 namespace cloth {
 
 struct SceneSettings {
-    std::string name = "tshirt";  ///< of scene_names()
+    std::string name = "tshirt";  ///< sheet, sphere or a garment, of garment_names(), on a body
     std::string fabric = "soft";  ///< soft, real
     int frames = 30;              ///< all with references; 0: as long as the scene lasts
     int vertices = 4000;          ///< of the sheets
 };
 
+/// Where the garment of the scene on a body is not another one.
 std::vector<std::string> scene_names();
 
 /// What happens in a scene, in a sentence.
 std::string scene_description(const std::string& name);
 
-/// @throws UsageError naming the choices if there is no such scene or fabric
+/// @throws UsageError naming the choices if there is no such scene, garment or fabric
 std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings);
 
 }  // namespace cloth

@@ -96,6 +96,13 @@ TEST_F(GuideSnippets, SelfContact) {
     EXPECT_EQ(layers->m_nodes.size(), 2 * shirt.vertex_count());
 }
 
+TEST_F(GuideSnippets, Wardrobe) {
+    const cloth::Garment pants = cloth::load_garment("pants_1000");
+    cloth::ClothState state = cloth::load_garment_start("pants_1000");
+    EXPECT_EQ(state.x.rows(), pants.vertex_count());
+    EXPECT_NE(state.x, pants.rest().vertices);
+}
+
 TEST_F(GuideSnippets, Solvers) {
     const auto weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));

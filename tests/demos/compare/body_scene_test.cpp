@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "data/files/garment_assets.h"
+#include "demos/compare/arguments.h"
+
 using namespace cloth;
 
 namespace {
@@ -29,6 +32,29 @@ TEST(BodySceneLoss, AShirtThatFellToTheFeetOrStayedBehindDoesNot) {
     Boundary gone = scene.boundary(start, start);
     gone.obstacles[0].x1.col(0).array() += 1.0;
     EXPECT_EQ(scene.loss(gone, scene.garment().rest().vertices), "slid off the body");
+}
+
+TEST(BodyScene, GarmentsWithAWaistbandStartAsTheyAreWorn) {
+    BodySceneSettings settings;
+    settings.garment = "pants_1000";
+    const BodyScene scene(settings);
+    const ClothState start = scene.start();
+    EXPECT_EQ(start.x, load_garment_start("pants_1000").x);
+    EXPECT_NE(start.x, scene.garment().rest().vertices);
+    EXPECT_EQ(start.v.norm(), 0.0);
+    const double time = -scene.lead_in_frames() * ComparisonScene::frame_time;
+    EXPECT_EQ(scene.loss(scene.boundary(time, time), start.x), "");
+}
+
+TEST(BodyScene, AWrongGarmentIsAnsweredWithTheRightOnes) {
+    try {
+        check_garment_name("toga");
+        FAIL() << "there is no toga";
+    } catch (const UsageError& error) {
+        const std::string text = error.what();
+        for (const char* part : {"toga", "pants_1000", "tshirt"})
+            EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
 }
 
 // Crouching moves the mean of the whole body by more than that of the torso.

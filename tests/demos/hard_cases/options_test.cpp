@@ -55,6 +55,17 @@ TEST(HardCaseOptions, MotionsTakeThePlaceOfTheCases) {
     EXPECT_FALSE(parse_hard_case_options({"--motions", "01_01", "--no-limbs"}).limbs);
 }
 
+TEST(HardCaseOptions, AWrongGarmentIsAnsweredWithTheRightOnes) {
+    try {
+        parse_hard_case_options({"--motions", "01_01", "--garment", "toga"});
+        FAIL() << "there is no toga";
+    } catch (const UsageError& error) {
+        const std::string text = error.what();
+        for (const char* part : {"toga", "pants_1000", "tshirt"})
+            EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+}
+
 TEST(HardCaseOptions, FoldersOfMotionsAreListed) {
     const std::filesystem::path folder =
         std::filesystem::path(testing::TempDir()) / "hard_cases_motions";

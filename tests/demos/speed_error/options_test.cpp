@@ -54,10 +54,22 @@ TEST(SpeedErrorOptions, WhatCannotBeIsNamedWithItsChoices) {
     expect_words(message({"--out"}), {"--out", "required"});
 }
 
+TEST(SpeedErrorOptions, AGarmentTakesTheTshirtsPlaceAndName) {
+    const auto scenes = [](const std::vector<std::string>& arguments) {
+        return parse_speed_error_options(arguments).scenes;
+    };
+    EXPECT_EQ(scenes({"--garment", "skirt"}), std::vector<std::string>{"skirt"});
+    EXPECT_EQ(scenes({"--scene", "all", "--garment", "skirt"}),
+              (std::vector<std::string>{"sheet", "skirt", "sphere"}));
+    EXPECT_EQ(scenes({"--scene", "sheet", "--garment", "skirt"}),
+              std::vector<std::string>{"sheet"});
+    expect_words(message({"--garment", "toga"}), {"toga", "skirt", "tshirt_1000"});
+}
+
 TEST(SpeedErrorOptions, HelpNamesEveryOption) {
-    expect_words(message({"--help"}),
-                 {"--scene", "--fabric", "--frames", "--vertices", "--solvers", "--relative-to",
-                  "--weights", "--threads", "--out", "gap_median", "peak_memory_mb"});
+    expect_words(message({"--help"}), {"--scene", "--garment", "--fabric", "--frames", "--vertices",
+                                       "--solvers", "--relative-to", "--weights", "--threads",
+                                       "--out", "gap_median", "peak_memory_mb"});
 }
 
 TEST(SpeedErrorOptions, DefaultSolversHaveEachNetworkInEachBackend) {
