@@ -1,5 +1,5 @@
+#include "data/authoring/garment_recipe.h"
 #include "data/authoring/sheet.h"
-#include "data/authoring/tshirt.h"
 #include "data/body/animated_body.h"
 #include "data/body/garment_fit.h"
 #include "data/body/skin_weights.h"
@@ -29,37 +29,63 @@ void up_to(const Run& run) {
     }
 }
 
-TEST(SettingsRanges, TshirtRecipe) {
-    const auto use = [](const TshirtRecipe& recipe) {
-        up_to<std::exception>([&] { make_tshirt(make_sheet(1.0, 1.0, 20), recipe); });
-    };
-    const std::string name = "TshirtRecipe.";
-    expect_refused(name + "target_vertices", 499, [&](double value) {
-        TshirtRecipe recipe;
-        recipe.target_vertices = static_cast<int>(value);
-        use(recipe);
-    });
+TEST(SettingsRanges, GarmentRecipe) {
+    const auto use = [](const GarmentRecipe& recipe) { recipe.check(); };
+    const std::string name = "GarmentRecipe.";
+    for (const double wrong : {499.0, 60001.0})
+        expect_refused(name + "target_vertices", wrong, [&](double value) {
+            GarmentRecipe recipe;
+            recipe.target_vertices = static_cast<int>(value);
+            use(recipe);
+        });
     expect_refused(name + "neck", std::nan(""), [&](double value) {
-        TshirtRecipe recipe;
-        recipe.neck.y() = value;
+        GarmentRecipe recipe;
+        recipe.landmarks["neck"] = Vec3(0.0, value, 0.0);
         use(recipe);
     });
+    for (const double wrong : {0.34, 1.96})
+        expect_refused(name + "hem", wrong, [&](double value) {
+            GarmentRecipe recipe;
+            recipe.to = GarmentRecipe::To::legs;
+            recipe.hem = value;
+            use(recipe);
+        });
     for (const auto& [field, member, low, high] :
-         {std::tuple("neck_tilt", &TshirtRecipe::neck_tilt, 0.0, 60.0),
-          std::tuple("neck_half_width", &TshirtRecipe::neck_half_width, 0.05, 0.15),
-          std::tuple("neck_half_depth", &TshirtRecipe::neck_half_depth, 0.05, 0.15),
-          std::tuple("sleeve_length", &TshirtRecipe::sleeve_length, 0.3, 0.8),
-          std::tuple("hem_height", &TshirtRecipe::hem_height, 0.3, 1.5),
-          std::tuple("chest_ease", &TshirtRecipe::chest_ease, 0.008, 0.05),
-          std::tuple("sleeve_ease", &TshirtRecipe::sleeve_ease, 0.008, 0.05),
-          std::tuple("drape_radius", &TshirtRecipe::drape_radius, 0.3, 10.0),
-          std::tuple("clearance", &TshirtRecipe::clearance, 0.001, 0.01)})
+         {std::tuple("hem_height", &GarmentRecipe::hem_height, 0.02, 1.5),
+          std::tuple("flare", &GarmentRecipe::flare, 0.0, 1.0)})
         for (const double wrong : {low - 1e-9, high + 1e-9, std::nan("")})
             expect_refused(name + field, wrong, [&, part = member](double value) {
-                TshirtRecipe recipe;
+                GarmentRecipe recipe;
                 recipe.*part = value;
                 use(recipe);
             });
+    for (const auto& [field, member, low, high] :
+         {std::tuple("sleeve_length", &GarmentRecipe::sleeve_length, 0.3, 1.95),
+          std::tuple("hem", &GarmentRecipe::hem, -0.5, 1.95),
+          std::tuple("rise", &GarmentRecipe::rise, -0.1, 0.15),
+          std::tuple("neck_tilt", &GarmentRecipe::neck_tilt, 0.0, 60.0),
+          std::tuple("neck_half_width", &GarmentRecipe::neck_half_width, 0.05, 0.15),
+          std::tuple("neck_half_depth", &GarmentRecipe::neck_half_depth, 0.05, 0.15),
+          std::tuple("strap_width", &GarmentRecipe::strap_width, 0.02, 0.1),
+          std::tuple("armhole_drop", &GarmentRecipe::armhole_drop, 0.0, 0.1),
+          std::tuple("ease", &GarmentRecipe::ease, 0.006, 0.05),
+          std::tuple("sleeve_ease", &GarmentRecipe::sleeve_ease, 0.006, 0.05),
+          std::tuple("leg_ease", &GarmentRecipe::leg_ease, 0.006, 0.05),
+          std::tuple("drape_radius", &GarmentRecipe::drape_radius, 0.3, 10.0),
+          std::tuple("clearance", &GarmentRecipe::clearance, 0.001, 0.01),
+          std::tuple("band_width", &GarmentRecipe::band_width, 0.02, 0.1),
+          std::tuple("band_ratio", &GarmentRecipe::band_ratio, 0.5, 1.0)})
+        for (const double wrong : {low - 1e-9, high + 1e-9, std::nan("")})
+            expect_refused(name + field, wrong, [&, part = member](double value) {
+                GarmentRecipe recipe;
+                recipe.*part = value;
+                use(recipe);
+            });
+    GarmentRecipe recipe;
+    recipe.sleeve_length = 0.0;
+    EXPECT_NO_THROW(use(recipe)) << "no sleeves";
+    recipe.landmarks["nose"] = Vec3::Zero();
+    EXPECT_THROW(use(recipe), ArgumentError);
 }
 
 TEST(SettingsRanges, GarmentFit) {

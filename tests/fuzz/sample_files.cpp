@@ -244,8 +244,9 @@ std::string bvh_file() {
            "9\n";
 }
 
-std::string tshirt_recipe_file() {
+std::string garment_recipe_file() {
     return "{\n \"about\": \"a T-shirt\",\n \"target_vertices\": 4000,\n"
+           " \"from\": \"shoulders\", \"to\": \"hem\", \"sleeve_length\": 0.5, \"flare\": 0.25,\n"
            " \"shoulder\": [0.158, 1.325, 0.012],\n \"neck\": [0.0, 1.383, 0.0242],\n"
            " \"neck_tilt\": 29.0,\n \"hem_height\": 0.81,\n \"clearance\": 0.0045\n}\n";
 }

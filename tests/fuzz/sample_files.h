@@ -14,7 +14,7 @@ std::string collada_file();  ///< centimetres, Z up, nested nodes, an animation
 /// The COLLADA file zipped (.zae), written to `path`.
 void write_zipped_collada(const std::string& path);
 std::string bvh_file();
-std::string tshirt_recipe_file();
+std::string garment_recipe_file();
 std::string rig_recipe_file();
 std::string shape_target_file();
 

@@ -10,22 +10,30 @@
 
 namespace cloth::test {
 
-/// What holds for every T-shirt, whatever its resolution.
-inline void expect_tshirt(const TriMesh& shirt, const SurfaceDistance& body, int target_vertices) {
-    EXPECT_NEAR(static_cast<double>(shirt.vertices.rows()), target_vertices,
-                0.03 * target_vertices);
-    validate_mesh("shirt", shirt);
-    const Topology shape = topology(shirt.faces);
+/// What holds for every garment as it is worn, whatever its resolution.
+inline void expect_garment(const TriMesh& worn, const SurfaceDistance& body, int target_vertices,
+                           int openings) {
+    EXPECT_NEAR(static_cast<double>(worn.vertices.rows()), target_vertices, 0.03 * target_vertices);
+    validate_mesh("garment", worn);
+    const Topology shape = topology(worn.faces);
     EXPECT_TRUE(shape.manifold);
     EXPECT_TRUE(shape.oriented);
     EXPECT_EQ(shape.components, 1);
-    EXPECT_EQ(shape.boundary_loops, 4);
-    EXPECT_EQ(shape.euler_characteristic, -2) << "genus 0 with four openings";
-    EXPECT_GT(smallest_angle(shirt), 20.0);
-    EXPECT_NEAR(mean_inner_degree(shirt), 6.0, 0.1);
-    EXPECT_GE(smallest_clearance(shirt, body), 0.004);
-    const VectorX areas = face_area_vectors(shirt.vertices, shirt.faces).rowwise().norm();
+    EXPECT_EQ(shape.boundary_loops, openings);
+    EXPECT_EQ(shape.euler_characteristic, 2 - openings) << "genus 0 with its openings";
+    EXPECT_GT(smallest_angle(worn), 20.0);
+    EXPECT_NEAR(mean_inner_degree(worn), 6.0, 0.1);
+    EXPECT_GE(smallest_clearance(worn, body), 0.004);
+    const VectorX areas = face_area_vectors(worn.vertices, worn.faces).rowwise().norm();
     EXPECT_GT(areas.maxCoeff(), 1.2 * areas.minCoeff()) << "a regular grid";
+}
+
+/// Length of a border (m) at positions of the vertices (|V| x 3).
+inline double length_of(const Points& x, const std::vector<int>& loop) {
+    double length = 0.0;
+    for (size_t k = 0; k < loop.size(); ++k)
+        length += (x.row(loop[k]) - x.row(loop[(k + 1) % loop.size()])).norm();
+    return length;
 }
 
 /// Mean position of a loop of vertices.
@@ -35,7 +43,7 @@ inline Vec3 centre_of(const TriMesh& mesh, const std::vector<int>& loop) {
     return sum / static_cast<double>(loop.size());
 }
 
-/// The openings: hem, neck, left sleeve (+x), right sleeve.
+/// The openings of a T-shirt: hem, neck, left sleeve (+x), right sleeve.
 struct Openings {
     std::vector<int> hem, neck, left, right;
 };

@@ -1,7 +1,5 @@
-// The committed T-shirts and the parts that T-shirts are made with; making them is tested in
-// tshirt_slow_test.cpp.
-
-#include "data/authoring/tshirt.h"
+// The committed garments and the parts that garments are made with; making them is tested in
+// garment_slow_test.cpp.
 
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 #include <random>
 
 #include "data/authoring/edge_flips.h"
+#include "data/authoring/make_garment.h"
 #include "data/authoring/scalar_grid.h"
 #include "data/authoring/sheet.h"
 #include "data/authoring/surface_edit.h"
@@ -20,7 +19,7 @@
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
 #include "data/files/mesh_io.h"
-#include "tests/data/authoring/tshirt_checks.h"
+#include "tests/data/authoring/garment_checks.h"
 
 using namespace cloth;
 using namespace cloth::test;
@@ -48,7 +47,7 @@ std::string recipe_error(const std::string& name, const std::string& text) {
     const std::string path = recipe_file(name, text);
     std::string message = "no error";
     try {
-        load_tshirt_recipe(path);
+        load_garment_recipe(path);
     } catch (const LoadError& error) {
         message = error.what();
     }
@@ -58,33 +57,118 @@ std::string recipe_error(const std::string& name, const std::string& text) {
 
 }  // namespace
 
-class CommittedTshirt : public testing::TestWithParam<std::pair<const char*, int>> {};
+namespace {
 
-TEST_P(CommittedTshirt, HasTheShapeOfATshirt) {
-    expect_tshirt(load_garment_mesh(GetParam().first), default_skin(), GetParam().second);
+GarmentRecipe committed_recipe(const std::string& name) {
+    return load_garment_recipe(asset_path("garments/" + name + ".json"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, CommittedTshirt,
-                         testing::Values(std::make_pair("tshirt", 4000),
-                                         std::make_pair("tshirt_2000", 2000),
-                                         std::make_pair("tshirt_1000", 1000)),
-                         [](const auto& test) { return std::string(test.param.first); });
+/// The recipe's name and number of vertices: pants_1000 has 1,000 and is of pants.
+std::pair<std::string, int> recipe_of(const std::string& garment) {
+    const size_t end = garment.find_last_not_of("0123456789");
+    if (end + 1 == garment.size()) return {garment, committed_recipe(garment).target_vertices};
+    return {garment.substr(0, end), std::stoi(garment.substr(end + 1))};
+}
+
+std::vector<std::string> bottoms() {
+    return {"pants", "pants_1000", "shorts", "shorts_1000", "skirt", "skirt_1000"};
+}
+
+}  // namespace
+
+class CommittedGarment : public testing::TestWithParam<std::string> {};
+
+TEST_P(CommittedGarment, IsWornOutsideOfTheBodyAndWellShaped) {
+    const auto [name, vertices] = recipe_of(GetParam());
+    const GarmentRecipe recipe = committed_recipe(name);
+    const int openings = (recipe.from == GarmentRecipe::From::shoulders ? 3 : 1) +
+                         (recipe.to == GarmentRecipe::To::legs ? 2 : 1);
+    TriMesh mesh = load_garment_mesh(GetParam());
+    EXPECT_GT(smallest_angle(mesh), 20.0) << "at rest";
+    mesh.vertices = load_garment_start(GetParam()).x;
+    expect_garment(mesh, default_skin(), vertices, openings);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CommittedGarment, testing::ValuesIn(garment_names()),
+                         [](const auto& test) { return test.param; });
+
+class CommittedBottom : public testing::TestWithParam<std::string> {};
+
+TEST_P(CommittedBottom, HasAWaistbandThatIsShorterAtRestThanWorn) {
+    const GarmentRecipe recipe = committed_recipe(recipe_of(GetParam()).first);
+    const TriMesh rest = load_garment_mesh(GetParam());
+    const Points worn = load_garment_start(GetParam()).x;
+    std::vector<std::vector<int>> loops = boundary_loops(rest.faces);
+    const auto height = [&](const std::vector<int>& loop) { return centre_of(rest, loop).y(); };
+    std::sort(loops.begin(), loops.end(),
+              [&](const auto& a, const auto& b) { return height(a) > height(b); });
+    EXPECT_NEAR(length_of(rest.vertices, loops[0]) / length_of(worn, loops[0]), recipe.band_ratio,
+                0.02);
+    for (size_t hem = 1; hem < loops.size(); ++hem)
+        EXPECT_EQ(length_of(rest.vertices, loops[hem]), length_of(worn, loops[hem]));
+    const double top = worn.col(1).maxCoeff();
+    for (Eigen::Index i = 0; i < worn.rows(); ++i)
+        if (worn(i, 1) < top - 3.6 * recipe.band_width)
+            EXPECT_EQ(rest.vertices.row(i), worn.row(i)) << "below the band nothing is stretched";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CommittedBottom, testing::ValuesIn(bottoms()),
+                         [](const auto& test) { return test.param; });
+
+TEST(GarmentAssets, ListHasEachGarmentOnceAndNoWornShapes) {
+    const std::vector<std::string> names = garment_names();
+    for (const char* name : {"tshirt", "tshirt_1000", "tank_top", "long_top", "shirt", "pants",
+                             "shorts", "skirt", "dress", "dress_1000"})
+        EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+    for (const char* name : {"cape", "pants.worn"})
+        EXPECT_EQ(std::count(names.begin(), names.end(), name), 0) << name;
+}
+
+TEST(GarmentAssets, AWrongNameIsAnsweredWithTheRightOnes) {
+    try {
+        load_garment_mesh("trousers");
+        FAIL() << "there are no trousers";
+    } catch (const LoadError& error) {
+        const std::string text = error.what();
+        for (const char* part : {"trousers", "pants_1000", "skirt", "tshirt"})
+            EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+}
+
+TEST(GarmentAssets, GarmentsWithoutAWaistbandAreWornAtRest) {
+    EXPECT_EQ(load_garment_start("tshirt_1000").x, load_garment_mesh("tshirt_1000").vertices);
+}
+
+TEST(BodyLandmarks, FollowTheDefaultBody) {
+    const BodyLandmarks marks = body_landmarks(Body::load_default());
+    const BodyLandmarks cut = committed_recipe("tshirt").landmarks_on(marks);
+    EXPECT_LT((marks.shoulder - cut.shoulder).norm(), 0.03);
+    EXPECT_LT((marks.elbow - cut.elbow).norm(), 0.02);
+    EXPECT_LT((marks.armpit - cut.armpit).norm(), 0.005);
+    EXPECT_LT((marks.neck - cut.neck).norm(), 0.005);
+    EXPECT_EQ(marks.knee, cut.knee) << "where the recipe has none";
+    EXPECT_GT(marks.waist.y(), marks.hip.y());
+    EXPECT_GT(marks.hip.y(), marks.crotch.y());
+    EXPECT_GT(marks.crotch.y(), marks.knee.y());
+    EXPECT_GT(marks.knee.y(), marks.ankle.y());
+}
 
 TEST(Tshirt, OpeningsAreWhereABodyComesOut) {
-    const TshirtRecipe recipe = load_tshirt_recipe(asset_path("garments/tshirt.json"));
+    const GarmentRecipe recipe = load_garment_recipe(asset_path("garments/tshirt.json"));
     const TriMesh shirt = load_garment_mesh("tshirt");
     const Openings openings = openings_of(shirt);
-    for (int i : openings.hem) EXPECT_NEAR(shirt.vertices(i, 1), recipe.hem_height, 1e-3);
-    const Vec3 sleeve = recipe.shoulder + recipe.sleeve_length * (recipe.elbow - recipe.shoulder);
+    for (int i : openings.hem) EXPECT_NEAR(shirt.vertices(i, 1), *recipe.hem_height, 1e-3);
+    const Vec3 shoulder = recipe.landmarks.at("shoulder"), elbow = recipe.landmarks.at("elbow");
+    const Vec3 sleeve = shoulder + recipe.sleeve_length * (elbow - shoulder);
     EXPECT_LT((centre_of(shirt, openings.left) - sleeve).norm(), 0.015);
     EXPECT_LT((centre_of(shirt, openings.right) - sleeve.cwiseProduct(Vec3(-1, 1, 1))).norm(),
               0.015);
     double widest = 0.0;
     for (int i : openings.neck) {
         widest = std::max(widest, std::abs(shirt.vertices(i, 0)));
-        EXPECT_GT(shirt.vertices(i, 1), recipe.shoulder.y()) << "the neckline hangs too low";
+        EXPECT_GT(shirt.vertices(i, 1), shoulder.y()) << "the neckline hangs too low";
     }
-    EXPECT_LT(widest, 0.65 * recipe.shoulder.x()) << "the opening would slide off the shoulders";
+    EXPECT_LT(widest, 0.65 * shoulder.x()) << "the opening would slide off the shoulders";
 }
 
 TEST(Tshirt, HangsOneToThreeCentimetresOffChestAndWaist) {
@@ -103,7 +187,7 @@ TEST(Tshirt, HangsOneToThreeCentimetresOffChestAndWaist) {
 }
 
 TEST(Tshirt, IsSmoothButForTheSeamUnderTheArm) {
-    const Vec3 armpit = load_tshirt_recipe(asset_path("garments/tshirt.json")).armpit;
+    const Vec3 armpit = committed_recipe("tshirt").landmarks.at("armpit");
     const Garment garment("tshirt", load_garment_mesh("tshirt"), Fabric::soft_cotton(), {}, true);
     const VectorX angles = garment.hinge_rest_angles().cwiseAbs();  // between triangles (rad)
     EXPECT_LT(angles.mean(), 0.08);
@@ -122,35 +206,40 @@ TEST(Tshirt, LoadsAsAGarmentOfAFabric) {
     EXPECT_THROW(load_garment("no_such_garment"), LoadError);
 }
 
-TEST(Tshirt, VertexCountsOutOfRangeAreRefused) {
-    for (int vertices : {-1, 0, 499, 20001}) {
-        TshirtRecipe recipe;
+TEST(MakeGarment, VertexCountsOutOfRangeAreRefused) {
+    for (int vertices : {-1, 0, 499, 60001}) {
+        GarmentRecipe recipe;
         recipe.target_vertices = vertices;
-        EXPECT_THROW(make_tshirt(default_skin().surface(), recipe), ArgumentError);
+        EXPECT_THROW(make_garment(default_skin().surface(), {}, recipe), ArgumentError);
     }
 }
 
-TEST(TshirtRecipe, CommittedRecipeHoldsTheDefaults) {
-    const TshirtRecipe file = load_tshirt_recipe(asset_path("garments/tshirt.json"));
-    const TshirtRecipe defaults;
+TEST(GarmentRecipe, DefaultsAreTheTshirts) {
+    const GarmentRecipe file = committed_recipe("tshirt");
+    const GarmentRecipe defaults;
     EXPECT_EQ(file.target_vertices, defaults.target_vertices);
-    EXPECT_EQ(file.shoulder, defaults.shoulder);
-    EXPECT_EQ(file.elbow, defaults.elbow);
-    EXPECT_EQ(file.armpit, defaults.armpit);
-    EXPECT_EQ(file.neck, defaults.neck);
+    EXPECT_EQ(file.from, defaults.from);
+    EXPECT_EQ(file.to, defaults.to);
     EXPECT_EQ(file.neck_tilt, defaults.neck_tilt);
     EXPECT_EQ(file.neck_half_width, defaults.neck_half_width);
     EXPECT_EQ(file.neck_half_depth, defaults.neck_half_depth);
     EXPECT_EQ(file.sleeve_length, defaults.sleeve_length);
-    EXPECT_EQ(file.hem_height, defaults.hem_height);
-    EXPECT_EQ(file.chest_ease, defaults.chest_ease);
+    EXPECT_EQ(file.ease, defaults.ease);
     EXPECT_EQ(file.sleeve_ease, defaults.sleeve_ease);
     EXPECT_EQ(file.drape_radius, defaults.drape_radius);
+    EXPECT_EQ(file.flare, defaults.flare);
     EXPECT_EQ(file.clearance, defaults.clearance);
 }
 
-TEST(TshirtRecipe, BrokenRecipesAreRefusedByField) {
-    EXPECT_THROW(load_tshirt_recipe("/no/such/recipe.json"), LoadError);
+TEST(GarmentRecipe, WordsSayWhatItCovers) {
+    const GarmentRecipe pants = committed_recipe("pants");
+    EXPECT_EQ(pants.from, GarmentRecipe::From::waist);
+    EXPECT_EQ(pants.to, GarmentRecipe::To::legs);
+    EXPECT_EQ(committed_recipe("dress").sleeve_length, 0.0);
+}
+
+TEST(GarmentRecipe, BrokenRecipesAreRefusedByField) {
+    EXPECT_THROW(load_garment_recipe("/no/such/recipe.json"), LoadError);
     const std::pair<const char*, const char*> cases[] = {
         {"", "JSON"},
         {"[1, 2]", "not a JSON object"},
@@ -158,12 +247,17 @@ TEST(TshirtRecipe, BrokenRecipesAreRefusedByField) {
         {"{\"hem\": 0.8}", "field hem: there is no such field"},
         {"{\"hem_height\": \"low\"}", "field hem_height: it is not a number"},
         {"{\"hem_height\": 81}", "field hem_height: 81 is out of range"},
+        {"{\"from\": \"feet\"}", "field from: \"feet\" is not one of its words"},
+        {"{\"to\": 2}", "field to: 2 is not one of its words"},
+        {"{\"sleeve_length\": 0.1}", "field sleeve_length: 0.1 is out of range"},
+        {"{\"to\": \"legs\", \"hem\": 0.2}", "field hem: 0.2 is out of range"},
+        {"{\"hem_height\": null}", "field hem_height: it is not a number"},
         {"{\"elbow\": [0, 1]}", "field elbow: it is not a list of three numbers"},
         {"{\"elbow\": [0, 1, null]}", "field elbow: it is not a number"},
         {"{\"target_vertices\": 10}", "field target_vertices"},
     };
     for (const auto& [text, part] : cases) {
-        const std::string error = recipe_error("tshirt_test_recipe.json", text);
+        const std::string error = recipe_error("garment_test_recipe.json", text);
         EXPECT_NE(error.find(part), std::string::npos) << error;
     }
 }

@@ -1,0 +1,29 @@
+#include "data/authoring/waistband.h"
+
+#include <algorithm>
+
+namespace cloth {
+
+Points without_stretch(const Points& worn, double top, const GarmentRecipe& recipe) {
+    const double band = top - recipe.band_width;
+    // A short transition would be a steep cone: thin triangles.
+    const double gathered = 2.5 * recipe.band_width;
+    Vec3 sum = Vec3::Zero();
+    double count = 0.0;
+    for (Eigen::Index i = 0; i < worn.rows(); ++i)
+        if (worn(i, 1) > band) {
+            sum += worn.row(i);
+            count += 1.0;
+        }
+    const Vec3 centre = sum / std::max(1.0, count);
+    Points rest = worn;
+    for (Eigen::Index i = 0; i < worn.rows(); ++i) {
+        const double t = std::clamp((band - worn(i, 1)) / gathered, 0.0, 1.0);
+        const double ratio = recipe.band_ratio + t * (1.0 - recipe.band_ratio);
+        for (int axis : {0, 2})
+            rest(i, axis) = centre[axis] + ratio * (worn(i, axis) - centre[axis]);
+    }
+    return rest;
+}
+
+}  // namespace cloth
