@@ -67,7 +67,7 @@ const RecipeOption recipe_options[] = {
     {"--kicks", "P", "share of the iterations that perturb their scene",
      [](Recipe& r, double v) { r.kicks.share = v; }},
     {"--skinned", "P",
-     "share of T-shirt scenes that start posed with the body in the midst of a motion",
+     "share of garment scenes that start posed with the body in the midst of a motion",
      [](Recipe& r, double v) { r.skinned.share = v; }},
     {"--skinned-at-rest", "P", "share of these that start without velocity",
      [](Recipe& r, double v) { r.skinned.at_rest = v; }},
@@ -102,8 +102,9 @@ Options parse(int count, char** arguments) {
     add("--minutes", settings.minutes, "M", "wall time of the training");
     add("--iterations", settings.iterations, "N", "end after so many iterations");
     add("--pool", settings.pool, "N", "scenes trained on in turn (40)");
-    add("--tshirt-share", settings.scenes.tshirt_share, "P", "share of T-shirt scenes (0.65)");
-    add("--garment", garment, "FILE", "train on this T-shirt of data/assets alone");
+    add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
+    add("--garment", garment, "FILE",
+        "train on this garment of data/assets/garments alone, by its file or name");
     add("--seed", settings.seed, "S", "(1)");
     add("--threads", settings.threads, "N", "of LibTorch (1)");
     add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
@@ -144,7 +145,8 @@ Options parse(int count, char** arguments) {
     } catch (const CLI::ParseError& error) {
         std::exit(app.exit(error));  // help, or what is wrong
     }
-    if (!garment.empty()) settings.scenes.garments = {garment};
+    if (!garment.empty())
+        settings.scenes.garments = {std::filesystem::path(garment).stem().string()};
     return options;
 }
 

@@ -35,7 +35,7 @@ std::string describe(const TrainerSettings& settings) {
     std::ostringstream text;
     text << settings.model.to_json() << ' ' << settings.recipe.describe() << " seed "
          << settings.seed << " pool " << settings.pool << " statistics "
-         << settings.freeze_statistics << " T-shirts " << settings.scenes.tshirt_share << ' '
+         << settings.freeze_statistics << " garments " << settings.scenes.garment_share << ' '
          << settings.scenes.shape_share << ' ' << settings.scenes.fabric_share;
     for (const std::string& garment : settings.scenes.garments) text << ' ' << garment;
     for (const int size : settings.scenes.sheet_sizes) text << ' ' << size;

@@ -79,10 +79,10 @@ RolloutValidation::RolloutValidation(const SceneFactory& factory, const RolloutS
     : m_settings(settings), m_folder(folder) {
     m_settings.check();
     if (m_settings.clips.empty()) m_settings.clips = default_clips();
-    if (factory.has_tshirts())
+    if (factory.has_garments())
         for (const std::string& clip : m_settings.clips)
             add(std::filesystem::path(clip).stem().string(),
-                factory.make_tshirt(1, clip, m_settings.garment), -1);
+                factory.make_garment(1, clip, m_settings.garment), -1);
     if (m_settings.sheet_vertices == 0) return;
     for (const bool held : {true, false})
         add(held ? "sheet-hanging" : "sheet-sphere",

@@ -17,7 +17,7 @@ struct RolloutSettings {
     /// Motions, as load_motion_by_name() takes them; empty: those of the shared data folder's
     /// motions/validation, else 01_01.
     std::vector<std::string> clips;
-    size_t garment = 99;        ///< index into the factory's T-shirts, the last if out of range
+    size_t garment = 99;        ///< index into the factory's garments, the last if out of range
     int sheet_vertices = 1000;  ///< of the hanging sheet and of that on a sphere, 9 to 200,000; 0:
                                 ///< no sheets
     int frames = 90;            ///< after the lead-in, 1 to 10,000
@@ -83,7 +83,7 @@ class RolloutValidation {
     std::vector<std::unique_ptr<Scene>> m_scenes;
 };
 
-/// Means over the T-shirts, or the sheets, with one number of iterations; NaN without any.
+/// Means over the garments, or the sheets, with one number of iterations; NaN without any.
 struct RolloutSummary {
     double held = 0.0, distance_mm = 0.0, stretch = 0.0;
 };

@@ -7,8 +7,8 @@
 #include "data/core/check_range.h"
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/stepper/guess.h"
+#include "gnn/train/body_world.h"
 #include "gnn/train/kicks.h"
-#include "gnn/train/tshirt_world.h"
 
 namespace cloth {
 
@@ -33,14 +33,14 @@ SkinWeights weights_from_skin(const Points& garment, const Body& body) {
     return sparse_weights(dense, 8, 1e-3);
 }
 
-Points pose_garment(const Garment& garment, const SkinWeights& weights, const AnimatedBody& body,
+Points pose_garment(const Points& worn, const SkinWeights& weights, const AnimatedBody& body,
                     double time) {
     const JointTransforms transforms = body.joint_transforms(time);
     std::vector<SkinMatrix> matrices;
     matrices.reserve(transforms.size());
     for (const Eigen::Isometry3d& transform : transforms)
         matrices.emplace_back(transform.matrix().topRows<3>());
-    return skin_points(garment.rest().vertices, weights, matrices);
+    return skin_points(worn, weights, matrices);
 }
 
 static void push_out_of(const AnimatedBody& body, double time, double dt, ClothState& state) {
@@ -55,15 +55,15 @@ static void push_out_of(const AnimatedBody& body, double time, double dt, ClothS
     projected_extrapolation(still, contacts, dt, PotentialSettings().contact_distance, state.x);
 }
 
-ClothState skinned_start(const Garment& garment, const AnimatedBody& body,
+ClothState skinned_start(const Garment& garment, const Points& worn, const AnimatedBody& body,
                          const SkinnedStartSettings& settings, double time, double dt,
                          SceneRandom& random) {
-    const SkinWeights weights = weights_from_skin(garment.rest().vertices, body.body());
+    const SkinWeights weights = weights_from_skin(worn, body.body());
     ClothState state = ClothState::at_rest(garment);
     state.time = time;
-    state.x = pose_garment(garment, weights, body, time);
+    state.x = pose_garment(worn, weights, body, time);
     if (!random.chance(settings.at_rest))
-        state.v = (state.x - pose_garment(garment, weights, body, time - dt)) / dt;
+        state.v = (state.x - pose_garment(worn, weights, body, time - dt)) / dt;
     add_white_noise(garment, settings.noise, random, state.x);
     push_out_of(body, time, dt, state);
     return state;

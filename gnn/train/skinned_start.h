@@ -22,13 +22,15 @@ struct SkinnedStartSettings {
 /// mean of the skin's weights around the nearest point of the skin.
 SkinWeights weights_from_skin(const Points& garment, const Body& body);
 
-/// The garment's rest pose carried into the body's pose at a time (s), by linear blend skinning.
-Points pose_garment(const Garment& garment, const SkinWeights& weights, const AnimatedBody& body,
+/// A garment as worn on the body's rest pose (|V| x 3, m), carried into its pose at a time (s) by
+/// linear blend skinning.
+Points pose_garment(const Points& worn, const SkinWeights& weights, const AnimatedBody& body,
                     double time);
 
 /// The garment posed with the body at a time (s), with noise, and pushed out of the body.
-/// @param dt  of the velocity (s)
-ClothState skinned_start(const Garment& garment, const AnimatedBody& body,
+/// @param worn  on the body's rest pose (|V| x 3, m)
+/// @param dt    of the velocity (s)
+ClothState skinned_start(const Garment& garment, const Points& worn, const AnimatedBody& body,
                          const SkinnedStartSettings& settings, double time, double dt,
                          SceneRandom& random);
 

@@ -21,7 +21,7 @@ class TrainingWorld {
 
 /// What a scene is made of.
 struct SceneParts {
-    std::string kind;  ///< "sheet" or "tshirt", for logs
+    std::string kind;  ///< "sheet" or "garment", for logs
     std::uint64_t seed = 0;
     std::shared_ptr<const Garment> garment;
     std::shared_ptr<const ClothGraph> graph;

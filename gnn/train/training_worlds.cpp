@@ -8,9 +8,9 @@
 #include "data/body/body_shapes.h"
 #include "data/core/check_range.h"
 #include "data/core/paths.h"
-#include "data/files/mesh_io.h"
+#include "data/files/garment_assets.h"
+#include "gnn/train/body_world.h"
 #include "gnn/train/sheet_world.h"
-#include "gnn/train/tshirt_world.h"
 
 namespace cloth {
 
@@ -23,6 +23,10 @@ bool is_held_out(const std::string& name) {
     return false;
 }
 
+ClothState not_moving(const Points& x) {
+    return {x, Points::Zero(x.rows(), 3), 0.0};
+}
+
 std::vector<std::string> training_motions() {
     if (const auto folder = shared_data_path("motions/train")) return list_motions(*folder);
     return {"01_03", "Boxing_Toes"};
@@ -30,8 +34,14 @@ std::vector<std::string> training_motions() {
 
 }  // namespace
 
+std::vector<std::string> training_garments() {
+    return {"long_top_1000", "long_top",    "shirt_1000",  "shirt",       "pants_1000",
+            "pants",         "shorts_1000", "shorts",      "skirt_1000",  "skirt",
+            "dress_1000",    "dress_4000",  "tshirt_1000", "tshirt_2000", "tshirt"};
+}
+
 void SceneSettings::check() const {
-    check_range("SceneSettings.tshirt_share", tshirt_share, 0.0, 1.0);
+    check_range("SceneSettings.garment_share", garment_share, 0.0, 1.0);
     check_range("SceneSettings.shape_share", shape_share, 0.0, 1.0);
     check_range("SceneSettings.fabric_share", fabric_share, 0.0, 1.0);
     check_range("SceneSettings.sheet_sizes", static_cast<double>(sheet_sizes.size()), 1, 100);
@@ -42,8 +52,15 @@ void SceneSettings::check() const {
 
 struct SceneFactory::Assets {
     std::vector<TriMesh> sheets;
-    std::vector<TriMesh> garments;
-    std::vector<std::shared_ptr<const ClothGraph>> graphs;  ///< of `garments`
+    /// What all scenes of a garment on the default body share.
+    struct Wardrobe {
+        std::string name;
+        TriMesh rest;
+        Points worn;  ///< |V| x 3 (m)
+        std::shared_ptr<const ClothGraph> graph;
+    };
+
+    std::vector<Wardrobe> garments;
     std::vector<Motion> motions;
     std::shared_ptr<const Body> body;
     std::optional<BodyShapes> shapes;
@@ -58,14 +75,14 @@ SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, st
             m_assets->sheets.push_back(
                 cloth::make_sheet(width, depth, size, static_cast<unsigned>(random.bits() >> 33)));
         }
-    if (m_settings.tshirt_share <= 0.0) return;
+    if (m_settings.garment_share <= 0.0) return;
     try {
         m_assets->body = std::make_shared<const Body>(Body::load_default());
         for (const std::string& name : m_settings.garments) {
-            m_assets->garments.push_back(load_mesh(asset_path(name)));
-            const Garment garment(name, m_assets->garments.back(), Fabric::soft_cotton());
-            m_assets->graphs.push_back(std::make_shared<const ClothGraph>(
-                build_cloth_graph(garment, m_config.graph_settings())));
+            const Garment garment = load_garment(name);
+            m_assets->garments.push_back({name, garment.rest(), load_garment_start(name).x,
+                                          std::make_shared<const ClothGraph>(build_cloth_graph(
+                                              garment, m_config.graph_settings()))});
         }
         if (m_settings.motions.empty()) m_settings.motions = training_motions();
         for (const std::string& name : m_settings.motions)
@@ -73,14 +90,14 @@ SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, st
         m_assets->shapes = BodyShapes::load_shared();
         if (!m_assets->shapes) std::cerr << "train: no body shapes, the default body is used\n";
     } catch (const std::exception& error) {
-        std::cerr << "train: no T-shirt scenes: " << error.what() << "\n";
+        std::cerr << "train: no garment scenes: " << error.what() << "\n";
     }
 }
 
 SceneFactory::~SceneFactory() = default;
 
-bool SceneFactory::has_tshirts() const {
-    return m_settings.tshirt_share > 0.0 && !m_assets->garments.empty() &&
+bool SceneFactory::has_garments() const {
+    return m_settings.garment_share > 0.0 && !m_assets->garments.empty() &&
            !m_assets->motions.empty();
 }
 
@@ -102,57 +119,57 @@ std::unique_ptr<TrainingScene> SceneFactory::make_sheet(std::uint64_t seed) cons
     return finish(make_sheet_parts(flat, fabric, random), seed);
 }
 
-std::unique_ptr<TrainingScene> SceneFactory::make_tshirt(std::uint64_t seed,
-                                                         const std::string& motion,
-                                                         size_t garment) const {
+std::unique_ptr<TrainingScene> SceneFactory::make_garment(std::uint64_t seed,
+                                                          const std::string& motion,
+                                                          size_t garment) const {
     if (m_assets->garments.empty()) return nullptr;
-    const size_t which = std::min(garment, m_assets->garments.size() - 1);
+    const Assets::Wardrobe& piece =
+        m_assets->garments[std::min(garment, m_assets->garments.size() - 1)];
     auto animated =
         std::make_shared<const AnimatedBody>(m_assets->body, load_motion_by_name(motion));
     SceneParts parts = make_body_parts(
-        std::make_shared<const Garment>("tshirt", m_assets->garments[which], Fabric::soft_cotton()),
-        animated, 0.0);
-    parts.graph = m_assets->graphs[which];
+        std::make_shared<const Garment>(piece.name, piece.rest, Fabric::soft_cotton()), animated,
+        0.0, not_moving(piece.worn));
+    parts.graph = piece.graph;
     return finish(std::move(parts), seed);
 }
 
 std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
     SceneRandom random(seed ^ 0x9e3779b97f4a7c15ull);
-    if (!has_tshirts() || !random.chance(m_settings.tshirt_share)) return make_sheet(seed);
+    if (!has_garments() || !random.chance(m_settings.garment_share)) return make_sheet(seed);
     const auto& assets = *m_assets;
     const int count = static_cast<int>(assets.garments.size());
-    const size_t which = static_cast<size_t>(random.below(count));
+    const Assets::Wardrobe& piece = assets.garments[static_cast<size_t>(random.below(count))];
     const Motion& whole =
         assets.motions[static_cast<size_t>(random.below(static_cast<int>(assets.motions.size())))];
     const Motion motion = motion_from(whole, random.below(whole.frame_count()), 30);
     const Fabric fabric =
         random.chance(m_settings.fabric_share) ? random.fabric() : Fabric::soft_cotton();
-    TriMesh rest = assets.garments[which];
+    TriMesh rest = piece.rest;
+    Points worn = piece.worn;
     std::shared_ptr<const Body> body = assets.body;
-    std::shared_ptr<const ClothGraph> graph = assets.graphs[which];
+    std::shared_ptr<const ClothGraph> graph = piece.graph;
     if (assets.shapes && random.chance(m_settings.shape_share)) {
         body = std::make_shared<const Body>(
             assets.body->with_rest(assets.shapes->skin(sample_body_shape(random.bits()))));
-        rest.vertices = carry_garment(rest.vertices, assets.body->rest(), body->rest());
+        const Points carried = carried_along(worn, assets.body->rest(), body->rest());
+        rest.vertices += carried;
+        worn += carried;
         graph = nullptr;
     }
     const auto animated = std::make_shared<const AnimatedBody>(body, motion);
-    const auto garment = std::make_shared<const Garment>("tshirt", std::move(rest), fabric);
+    const auto garment = std::make_shared<const Garment>(piece.name, std::move(rest), fabric);
     const double yaw = random.uniform(0.0, 2.0 * M_PI);
     const int warm_up = random.below(m_settings.max_warm_up + 1);
     const int longest = 30 + random.below(60);
     const int frames = animated->frame_count(m_config.dt);
     const bool skinned = m_settings.skinned.share > 0.0 && random.chance(m_settings.skinned.share);
     const int first = skinned ? random.below(std::max(1, frames - 30)) : warm_up;
-    SceneParts parts;
-    if (skinned) {
-        const ClothState start = skinned_start(*garment, *animated, m_settings.skinned,
-                                               first * m_config.dt, m_config.dt, random);
-        parts = make_body_parts(garment, animated, yaw, &start);
-    } else {
-        parts = make_body_parts(garment, animated, yaw);
-        parts.warm_up = warm_up;
-    }
+    ClothState start = skinned ? skinned_start(*garment, worn, *animated, m_settings.skinned,
+                                               first * m_config.dt, m_config.dt, random)
+                               : not_moving(worn);
+    SceneParts parts = make_body_parts(garment, animated, yaw, std::move(start));
+    if (!skinned) parts.warm_up = warm_up;
     parts.graph = graph;
     parts.life = std::max(5, std::min(frames - first, longest));
     return finish(std::move(parts), seed);

@@ -10,25 +10,29 @@
 
 namespace cloth {
 
+/// All committed garments of up to 4,000 vertices but tank_top; tshirt comes last.
+std::vector<std::string> training_garments();
+
 struct SceneSettings {
-    double tshirt_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
-    double shape_share = 0.5;    ///< of T-shirt scenes with a sampled body shape, where available;
-                                 ///< 0 to 1
-    double fabric_share = 0.6;   ///< of scenes with a sampled fabric; the others are soft cotton;
-                                 ///< 0 to 1
+    double garment_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
+    double shape_share = 0.5;     ///< of garment scenes with a sampled body shape, where available;
+                                  ///< 0 to 1
+    double fabric_share = 0.6;    ///< of scenes with a sampled fabric; the others are soft cotton;
+                                  ///< 0 to 1
     std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices, 9 to 200,000 each
-    std::vector<std::string> garments = {"garments/tshirt_1000.obj", "garments/tshirt_2000.obj",
-                                         "garments/tshirt.obj"};  ///< in data/assets
+    /// As load_garment() takes them. tank_top is kept out, so that there is an unseen garment; the
+    /// last one is validated on.
+    std::vector<std::string> garments = training_garments();
     std::vector<std::string> motions;  ///< names or files; empty: all training clips there are
     int max_warm_up = 40;              ///< frames, 0 to 1000
-    SkinnedStartSettings skinned;      ///< of T-shirt scenes; these have no warm-up
+    SkinnedStartSettings skinned;      ///< of garment scenes; these have no warm-up
 
     /// @throws ArgumentError if a value is out of its range
     void check() const;
 };
 
-/// Makes training scenes: sheets pinned in various ways among moving spheres, and T-shirts on
-/// bodies in motion. A scene depends on its seed (and the settings) alone.
+/// Makes training scenes: sheets pinned in various ways among moving spheres, and garments
+/// on bodies in motion. A scene depends on its seed (and the settings) alone.
 class SceneFactory {
  public:
     /// Loads what it can of body, motions and garments; says on standard error what is missing.
@@ -37,17 +41,17 @@ class SceneFactory {
 
     std::unique_ptr<TrainingScene> make(std::uint64_t seed) const;
 
-    /// A T-shirt scene on a given clip with the default body and soft cotton, from the rest pose
-    /// on. Null where there is no T-shirt.
+    /// A garment on a given clip with the default body and soft cotton, from the rest pose on. Null
+    /// where there is no garment.
     /// @param garment  index into the settings' garments; the last one that loaded if out of range
-    std::unique_ptr<TrainingScene> make_tshirt(std::uint64_t seed, const std::string& motion,
-                                               size_t garment) const;
+    std::unique_ptr<TrainingScene> make_garment(std::uint64_t seed, const std::string& motion,
+                                                size_t garment) const;
     std::unique_ptr<TrainingScene> make_sheet(std::uint64_t seed) const;
 
     /// A scene of other parts, for the factory's kind of network.
     std::unique_ptr<TrainingScene> finish(SceneParts parts, std::uint64_t seed = 0) const;
 
-    bool has_tshirts() const;
+    bool has_garments() const;
 
  private:
     struct Assets;

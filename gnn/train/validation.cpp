@@ -27,7 +27,7 @@ static std::vector<std::string> held_out_clips() {
 }
 
 void ValidationSettings::check() const {
-    check_range("ValidationSettings.tshirt_states", tshirt_states, 0, 1000);
+    check_range("ValidationSettings.garment_states", garment_states, 0, 1000);
     check_range("ValidationSettings.sheet_states", sheet_states, 0, 1000);
     check_range("ValidationSettings.rollout_iterations", rollout_iterations, 1, 1000);
     check_range("ValidationSettings.minimum_iterations", minimum_iterations, 1, 10000);
@@ -36,11 +36,11 @@ void ValidationSettings::check() const {
 Validation::Validation(const SceneFactory& factory, ValidationSettings settings)
     : m_settings(settings) {
     m_settings.check();
-    if (factory.has_tshirts() && settings.tshirt_states > 0) {
+    if (factory.has_garments() && settings.garment_states > 0) {
         const std::vector<std::string> clips = held_out_clips();
-        const int each = std::max(1, settings.tshirt_states / static_cast<int>(clips.size()));
+        const int each = std::max(1, settings.garment_states / static_cast<int>(clips.size()));
         for (const std::string& clip : clips)
-            add_states(factory.make_tshirt(1, clip, settings.garment), 32, 6, each);
+            add_states(factory.make_garment(1, clip, settings.garment), 32, 6, each);
     }
     for (int k = 0; k < settings.sheet_states; k += 2)
         add_states(factory.make_sheet(0x7e57000000ull + static_cast<std::uint64_t>(k)), 5, 10, 2);
@@ -76,7 +76,7 @@ static GapSummary summarise(std::vector<double> gaps, std::vector<double> errors
 
 template <typename Predict>
 ValidationResult Validation::measure_with(Predict predict) {
-    std::vector<double> gaps[2], errors[2];  // of T-shirts and of sheets
+    std::vector<double> gaps[2], errors[2];  // of garments and of sheets
     for (const State& state : m_states) {
         state.scene->state = state.state;
         state.scene->prepare(full_contact_weight);

@@ -9,11 +9,11 @@
 namespace cloth {
 
 struct ValidationSettings {
-    int tshirt_states = 8;        ///< of a T-shirt on a clip that is never trained on, 0 to 1000
+    int garment_states = 8;       ///< of a garment on a clip that is never trained on, 0 to 1000
     int sheet_states = 8;         ///< 0 to 1000
     int rollout_iterations = 12;  ///< of the solver that makes the states, 1 to 1000
     int minimum_iterations = 80;  ///< of the solver that finds the least energy, 1 to 10,000
-    size_t garment = 99;          ///< index into the factory's T-shirts, the last if out of range
+    size_t garment = 99;          ///< index into the factory's garments, the last if out of range
 
     /// @throws ArgumentError if a value is out of its range
     void check() const;

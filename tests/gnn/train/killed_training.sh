@@ -10,7 +10,7 @@ mkdir -p "$out"
 run() {
     folder=$1
     shift
-    "$train" --width 16 --steps 2 --tshirt-share 0 --pool 4 --iterations 150 --save-every 0 \
+    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 150 --save-every 0 \
         --validation-share 0 --nice 1 --out "$out/$folder" "$@" 2>>"$out/$folder.log"
 }
 
@@ -30,7 +30,7 @@ run alone
 for signal in KILL TERM; do
     touch "$out/before"
     sleep 0.05
-    "$train" --width 16 --steps 2 --tshirt-share 0 --pool 4 --iterations 150 --save-every 0 \
+    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 150 --save-every 0 \
         --validation-share 0 --resume --out "$out/killed" 2>>"$out/killed.log" &
     training=$!
     await_checkpoint

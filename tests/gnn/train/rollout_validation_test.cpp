@@ -21,7 +21,7 @@ ModelConfig tiny_model() {
 
 SceneSettings sheets_only() {
     SceneSettings scenes;
-    scenes.tshirt_share = 0.0;
+    scenes.garment_share = 0.0;
     scenes.sheet_sizes = {60};
     return scenes;
 }

@@ -20,9 +20,9 @@ TrainerSettings tiny(const std::string& name, const std::string& recipe = "quick
     settings.model.width = 16;
     settings.model.steps = 4;
     settings.recipe = Recipe::named(recipe, 16);
-    settings.scenes.tshirt_share = 0.0;
+    settings.scenes.garment_share = 0.0;
     settings.scenes.sheet_sizes = {60};
-    settings.validation.tshirt_states = 0;
+    settings.validation.garment_states = 0;
     settings.validation.sheet_states = 4;
     settings.rollouts.sheet_vertices = 60;
     settings.rollouts.frames = 4;
@@ -107,7 +107,7 @@ TEST(Trainer, ValidationFillsItsColumnsAndChangesNoBits) {
     for (size_t row = 1; row < lines.size(); ++row) {
         EXPECT_EQ(std::count(lines[row].begin(), lines[row].end(), ','),
                   std::count(lines[0].begin(), lines[0].end(), ','));
-        // T-shirts are missing here: 3 columns of steps and 9 of rollouts.
+        // garments are missing here: 3 columns of steps and 9 of rollouts.
         std::stringstream cells(lines[row]);
         int empty = 0;
         for (std::string cell; std::getline(cells, cell, ',');) empty += cell.empty();
@@ -224,7 +224,7 @@ TEST(Trainer, RefusesSettingsThatCannotWork) {
     refuses([](TrainerSettings& s) { s.save_every = -1.0; });
     refuses([](TrainerSettings& s) { s.recipe.kicks.share = 2.0; });
     refuses([](TrainerSettings& s) { s.recipe.target_iterations = 0; });
-    refuses([](TrainerSettings& s) { s.scenes.tshirt_share = -0.5; });
+    refuses([](TrainerSettings& s) { s.scenes.garment_share = -0.5; });
     refuses([](TrainerSettings& s) { s.validation.minimum_iterations = 0; });
     refuses([](TrainerSettings& s) { s.rollouts.frames = 0; });
 }

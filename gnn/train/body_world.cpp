@@ -1,4 +1,4 @@
-#include "gnn/train/tshirt_world.h"
+#include "gnn/train/body_world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,12 +30,11 @@ class BodyWorld : public TrainingWorld {
 }  // namespace
 
 SceneParts make_body_parts(std::shared_ptr<const Garment> garment,
-                           std::shared_ptr<const AnimatedBody> body, double yaw,
-                           const ClothState* start) {
+                           std::shared_ptr<const AnimatedBody> body, double yaw, ClothState start) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(yaw, Vec3::UnitY()).toRotationMatrix();
     SceneParts parts;
-    parts.kind = "tshirt";
-    parts.start = start ? *start : ClothState::at_rest(*garment);
+    parts.kind = "garment";
+    parts.start = std::move(start);
     parts.start.x = (parts.start.x * turn.transpose()).eval();
     parts.start.v = (parts.start.v * turn.transpose()).eval();
     parts.garment = std::move(garment);
@@ -70,9 +69,9 @@ void for_each_skin_neighbour(const Points& garment, const Points& skin,
     }
 }
 
-Points carry_garment(const Points& garment, const Points& skin_before, const Points& skin_after) {
+Points carried_along(const Points& garment, const Points& skin_before, const Points& skin_after) {
     const Points displacement = skin_after - skin_before;
-    Points carried = garment;
+    Points carried = Points::Zero(garment.rows(), 3);
     for_each_skin_neighbour(garment, skin_before,
                             [&](Eigen::Index i, Eigen::Index vertex, double weight) {
                                 carried.row(i) += weight * displacement.row(vertex);

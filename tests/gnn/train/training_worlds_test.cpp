@@ -1,0 +1,43 @@
+#include "gnn/train/training_worlds.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "data/body/body.h"
+#include "data/files/garment_assets.h"
+#include "gnn/train/body_world.h"
+
+using namespace cloth;
+
+TEST(TrainingGarments, AreCommittedNotTooLargeAndLeaveOneOut) {
+    const std::vector<std::string> names = training_garments();
+    for (const std::string& name : names) {
+        EXPECT_LE(load_garment_mesh(name).vertices.rows(), 4120) << name;
+        EXPECT_EQ(name.find("tank_top"), std::string::npos) << "the unseen garment";
+    }
+    for (const std::string& name : garment_names())
+        if (name.find("tank_top") == std::string::npos && name != "dress")
+            EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+    EXPECT_EQ(names.back(), "tshirt");
+}
+
+TEST(SceneFactory, GarmentsStartAsTheyAreWorn) {
+    SceneSettings settings;
+    settings.garments = {"skirt_1000"};
+    settings.motions = {"01_03"};
+    const SceneFactory factory(ModelConfig::variant_named("fast"), settings, 1);
+    ASSERT_TRUE(factory.has_garments());
+    const auto scene = factory.make_garment(1, "01_01", 0);
+    EXPECT_EQ(scene->state.x, load_garment_start("skirt_1000").x);
+    EXPECT_EQ(scene->garment().rest().vertices, load_garment_mesh("skirt_1000").vertices);
+    EXPECT_EQ(scene->garment().name(), "skirt_1000");
+}
+
+TEST(CarriedAlong, AGarmentMovesWithTheSkinUnderIt) {
+    const TriMesh skirt{load_garment_start("skirt_1000").x, load_garment_mesh("skirt_1000").faces};
+    const Points skin = Body::load_default().rest();
+    const Points moved = skin.rowwise() + Eigen::RowVector3d(0.1, -0.2, 0.3);
+    const Points carried = carried_along(skirt.vertices, skin, moved);
+    EXPECT_LT((carried.rowwise() - Eigen::RowVector3d(0.1, -0.2, 0.3)).cwiseAbs().maxCoeff(), 1e-9);
+}
