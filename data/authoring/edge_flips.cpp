@@ -14,6 +14,7 @@ namespace cloth {
 namespace {
 
 constexpr int kSmallestDegree = 4;  // a flip must leave no vertex in a flat corner of one triangle
+constexpr int kStuckDegree = 3;  // an inner vertex that smoothing squeezes between its neighbours
 
 struct Side {
     int face;
@@ -54,6 +55,15 @@ int flip_edges(TriMesh& mesh) {
         ++degree[static_cast<size_t>(edge.first)];
         ++degree[static_cast<size_t>(edge.second)];
     }
+    std::vector<char> on_border(static_cast<size_t>(mesh.vertices.rows()), 0);
+    for (const auto& [edge, sides] : edges)
+        if (sides.size() == 1)
+            on_border[static_cast<size_t>(edge.first)] =
+                on_border[static_cast<size_t>(edge.second)] = 1;
+    const auto is_stuck = [&](int vertex) {
+        return degree[static_cast<size_t>(vertex)] == kStuckDegree &&
+               !on_border[static_cast<size_t>(vertex)];
+    };
     std::set<std::pair<int, int>> created;
     std::vector<char> touched(static_cast<size_t>(mesh.faces.rows()), 0);
     int flips = 0;
@@ -64,9 +74,15 @@ int flip_edges(TriMesh& mesh) {
         const std::pair<int, int> across = std::minmax(p.opposite, q.opposite);
         int& from_degree = degree[static_cast<size_t>(p.from)];
         int& to_degree = degree[static_cast<size_t>(p.to)];
-        if (std::min(from_degree, to_degree) <= kSmallestDegree) continue;
+        // A border has room for one edge less, if that frees a vertex.
+        const bool frees = on_border[static_cast<size_t>(p.from)] &&
+                           on_border[static_cast<size_t>(p.to)] &&
+                           (is_stuck(p.opposite) || is_stuck(q.opposite));
+        if (std::min(from_degree, to_degree) <= (frees ? kSmallestDegree - 1 : kSmallestDegree))
+            continue;
         if (edges.count(across) || created.count(across)) continue;
-        if (!flip_is_better(mesh.vertices, p, q)) continue;
+        // Its triangles are too thin to compare: smoothing comes after the flip.
+        if (!frees && !flip_is_better(mesh.vertices, p, q)) continue;
         mesh.faces.row(p.face) << p.opposite, p.from, q.opposite;
         mesh.faces.row(q.face) << q.opposite, p.to, p.opposite;
         touched[static_cast<size_t>(p.face)] = touched[static_cast<size_t>(q.face)] = 1;

@@ -32,7 +32,7 @@ class HardScene : public ComparisonScene {
     }
 
     double dt() const { return m_parts.dt; }
-    const ClothState& start() const { return m_parts.start; }
+    ClothState start() const override { return m_parts.start; }
 
     Boundary boundary(double t0, double t1) const override { return m_parts.outside(t0, t1); }
     Boundary boundary_of_frame(int frame) const {

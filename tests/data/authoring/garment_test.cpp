@@ -355,6 +355,22 @@ TEST(EdgeFlips, SliversBecomeGoodTriangles) {
     EXPECT_EQ(flip_edges(quad), 0);
 }
 
+TEST(EdgeFlips, AVertexSqueezedAgainstTheBorderIsFreed) {
+    TriMesh mesh;  // 3 is inside, between 0, 1 and 2 of the border
+    mesh.vertices.resize(5, 3);
+    mesh.vertices << -1, 0, 0, 0, -0.1, 0, 1, 0, 0, 0, -0.05, 0, 0, 1.2, 0;
+    mesh.faces.resize(4, 3);
+    mesh.faces << 0, 1, 3, 1, 2, 3, 0, 3, 2, 0, 2, 4;
+    EXPECT_EQ(flip_edges(mesh), 1);
+    EXPECT_TRUE(topology(mesh.faces).oriented);
+    EXPECT_EQ(topology(mesh.faces).boundary_loops, 1);
+    EXPECT_EQ(undirected_edges(mesh.faces).size(), 8u);
+    int faces_of_the_vertex = 0;
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+        faces_of_the_vertex += (mesh.faces.row(f).array() == 3).any() ? 1 : 0;
+    EXPECT_EQ(faces_of_the_vertex, 4);
+}
+
 TEST(Clearance, SheetThroughABallIsPushedOut) {
     const SurfaceDistance body(ball(0.3, 0.02));
     TriMesh sheet = make_sheet(1.0, 1.0, 900);
