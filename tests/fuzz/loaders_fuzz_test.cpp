@@ -12,6 +12,7 @@
 #include "data/body/character_rig.h"
 #include "data/body/motion.h"
 #include "data/body/rig_recipe.h"
+#include "data/core/errors.h"
 #include "data/files/mesh_io.h"
 #include "gnn/model/weights.h"
 #include "tests/fuzz/file_fuzzing.h"

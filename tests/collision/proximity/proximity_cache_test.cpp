@@ -62,7 +62,8 @@ TEST(ProximityCache, AnswersThatAreKnownAlreadyAreThoseOfANewSearch) {
         boundary.ignored_limbs.assign(300, ignored[i]);
         warm.query(x, boundary, by_warm);
         expect_as_new(boundary, StepEnd::start, 0.4);
-        for (int row = i; row < 300; row += 2 + i) x.row(row) += random_point(random, 0.1).transpose();
+        for (int row = i; row < 300; row += 2 + i)
+            x.row(row) += random_point(random, 0.1).transpose();
         warm.query(x, boundary, by_warm, StepEnd::end);
         expect_as_new(boundary, StepEnd::end, 0.4);
         std::vector<int> all(300);

@@ -108,8 +108,9 @@ TEST_P(CommittedBottom, HasAWaistbandThatIsShorterAtRestThanWorn) {
         EXPECT_EQ(length_of(rest.vertices, loops[hem]), length_of(worn, loops[hem]));
     const double top = worn.col(1).maxCoeff();
     for (Eigen::Index i = 0; i < worn.rows(); ++i)
-        if (worn(i, 1) < top - 3.6 * recipe.band_width)
+        if (worn(i, 1) < top - 3.6 * recipe.band_width) {
             EXPECT_EQ(rest.vertices.row(i), worn.row(i)) << "below the band nothing is stretched";
+        }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, CommittedBottom, testing::ValuesIn(bottoms()),

@@ -10,7 +10,7 @@
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
 #include "data/files/mesh_io.h"
-#include "tests/data/authoring/tshirt_checks.h"
+#include "tests/data/authoring/garment_checks.h"
 
 using namespace cloth;
 using namespace cloth::test;

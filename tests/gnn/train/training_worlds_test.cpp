@@ -17,8 +17,9 @@ TEST(TrainingGarments, AreCommittedNotTooLargeAndLeaveOneOut) {
         EXPECT_EQ(name.find("tank_top"), std::string::npos) << "the unseen garment";
     }
     for (const std::string& name : garment_names())
-        if (name.find("tank_top") == std::string::npos && name != "dress")
+        if (name.find("tank_top") == std::string::npos && name != "dress") {
             EXPECT_EQ(std::count(names.begin(), names.end(), name), 1) << name;
+        }
     EXPECT_EQ(names.back(), "tshirt");
 }
 
