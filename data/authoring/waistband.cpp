@@ -19,6 +19,7 @@ Points without_stretch(const Points& worn, double top, const GarmentRecipe& reci
     Points rest = worn;
     for (Eigen::Index i = 0; i < worn.rows(); ++i) {
         const double t = std::clamp((band - worn(i, 1)) / gathered, 0.0, 1.0);
+        if (t == 1.0) continue;  // keeps its bits
         const double ratio = recipe.band_ratio + t * (1.0 - recipe.band_ratio);
         for (int axis : {0, 2})
             rest(i, axis) = centre[axis] + ratio * (worn(i, axis) - centre[axis]);

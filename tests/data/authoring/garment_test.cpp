@@ -245,7 +245,7 @@ TEST(GarmentRecipe, BrokenRecipesAreRefusedByField) {
         {"", "JSON"},
         {"[1, 2]", "not a JSON object"},
         {"{\"hem_height\": 0.8", "JSON"},
-        {"{\"hem\": 0.8}", "field hem: there is no such field"},
+        {"{\"hemline\": 0.8}", "field hemline: there is no such field"},
         {"{\"hem_height\": \"low\"}", "field hem_height: it is not a number"},
         {"{\"hem_height\": 81}", "field hem_height: 81 is out of range"},
         {"{\"from\": \"feet\"}", "field from: \"feet\" is not one of its words"},
