@@ -15,8 +15,9 @@ int main() {
     cloth::ClothSettings settings;
     settings.weights = std::make_shared<const cloth::EngineWeights>(
         cloth::Weights::load(cloth::asset_path("weights/small.safetensors")));
+    btGnnSolverSettings soft{cloth::Fabric::soft_cotton()};  // which the network knows
     btGnnSoftBodySolver solver(
-        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
+        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); }, soft);
 
     // A Bullet world as always, but for its last argument.
     btSoftBodyRigidBodyCollisionConfiguration config;

@@ -22,6 +22,11 @@ struct BodyLandmarks {
     Vec3 ankle = Vec3::Zero();     ///< centre of the left ankle
 };
 
+/// The other side's point of the left side's, if `side` is -1; the same if it is 1.
+inline Vec3 mirrored(const Vec3& left, double side) {
+    return {side * left.x(), left.y(), left.z()};
+}
+
 /// Joints are the body's own; armpit and neck opening lie where they are on the default body,
 /// relative to shoulder and neck joints and the length of the upper arm.
 /// @throws ArgumentError if the body lacks a joint, or its legs do not part

@@ -22,10 +22,6 @@ VectorX level_of(const Points& vertices, const Where& where, const Level& level)
     return values;
 }
 
-Vec3 mirrored(const Vec3& p, double side) {
-    return p.cwiseProduct(Vec3(side, 1.0, 1.0));
-}
-
 /// Across the arm, near its axis only: the plane also meets the waist.
 TriMesh cut_sleeve(const TriMesh& mesh, const BodyLandmarks& marks, const GarmentRecipe& recipe,
                    double side) {

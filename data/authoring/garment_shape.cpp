@@ -17,10 +17,6 @@ namespace {
 constexpr double kCell = 0.006;  // of the grid that the surface is drawn from (m)
 constexpr double kMirrorX[2] = {1.0, -1.0};
 
-Vec3 mirrored(const Vec3& p, double side) {
-    return {side * p.x(), p.y(), p.z()};
-}
-
 bool from_shoulders(const GarmentRecipe& recipe) {
     return recipe.from == GarmentRecipe::From::shoulders;
 }

@@ -12,36 +12,28 @@ namespace {
 constexpr int kRounds = 60;
 constexpr double kMargin = 1e-4;  // beyond the clearance, so that the rounds come to an end (m)
 
-/// What the vertices have to move by, so that a probe point gets clear of the body.
-struct Wishes {
-    Points move;
-    double smallest = std::numeric_limits<double>::infinity();
-};
-
-template <size_t N>
-void probe(const TriMesh& mesh, const std::array<int, N>& corners, const SurfaceDistance& body,
-           double clearance, Wishes& wishes) {
+template <size_t N, class Push>
+void probe(const TriMesh& mesh, const std::array<int, N>& corners, const Push& push, Points& move) {
     Vec3 p = Vec3::Zero();
     for (int corner : corners) p += mesh.vertices.row(corner) / static_cast<double>(N);
-    const NearestPoint near = body.nearest(p);
-    wishes.smallest = std::min(wishes.smallest, near.distance);
-    const double missing = clearance + kMargin - near.distance;
-    if (missing <= 0.0) return;
+    const Vec3 wish = push(p);
+    const double length = wish.norm();
     for (int corner : corners)
-        if (missing > wishes.move.row(corner).norm())
-            wishes.move.row(corner) = missing * near.normal.transpose();
+        if (length > move.row(corner).norm()) move.row(corner) = wish;
 }
 
-Wishes collect_wishes(const TriMesh& mesh, const std::vector<std::array<int, 2>>& edges,
-                      const SurfaceDistance& body, double clearance) {
-    Wishes wishes{Points::Zero(mesh.vertices.rows(), 3)};
-    for (int i = 0; i < mesh.vertices.rows(); ++i)
-        probe(mesh, std::array<int, 1>{i}, body, clearance, wishes);
-    for (const auto& edge : edges) probe(mesh, edge, body, clearance, wishes);
+/// What the vertices have to move by (|V| x 3, m), so that the points of the mesh do as `push`
+/// says.
+template <class Push>
+Points moves_of(const TriMesh& mesh, const std::vector<std::array<int, 2>>& edges,
+                const Push& push) {
+    Points move = Points::Zero(mesh.vertices.rows(), 3);
+    for (int i = 0; i < mesh.vertices.rows(); ++i) probe(mesh, std::array<int, 1>{i}, push, move);
+    for (const auto& edge : edges) probe(mesh, edge, push, move);
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
-        probe(mesh, std::array<int, 3>{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, body,
-              clearance, wishes);
-    return wishes;
+        probe(mesh, std::array<int, 3>{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)}, push,
+              move);
+    return move;
 }
 
 /// Vertices move at least by that, and half as much as their neighbours do.
@@ -67,11 +59,34 @@ Points spread(const Points& move, const std::vector<std::array<int, 2>>& edges) 
 double push_out(TriMesh& mesh, const SurfaceDistance& body, double clearance) {
     const std::vector<std::array<int, 2>> edges = undirected_edges(mesh.faces);
     for (int round = 0; round < kRounds; ++round) {
-        const Wishes wishes = collect_wishes(mesh, edges, body, clearance);
-        if (wishes.smallest >= clearance) return wishes.smallest;
-        mesh.vertices += spread(wishes.move, edges);
+        double smallest = std::numeric_limits<double>::infinity();
+        const Points move = moves_of(mesh, edges, [&](const Vec3& p) -> Vec3 {
+            const NearestPoint near = body.nearest(p);
+            smallest = std::min(smallest, near.distance);
+            return std::max(0.0, clearance + kMargin - near.distance) * near.normal;
+        });
+        if (smallest >= clearance) return smallest;
+        mesh.vertices += spread(move, edges);
     }
     return smallest_clearance(mesh, body);
+}
+
+bool push_over(TriMesh& mesh, const SurfaceDistance& inner, double gap, double reach) {
+    const std::vector<std::array<int, 2>> edges = undirected_edges(mesh.faces);
+    for (int round = 0; round < kRounds; ++round) {
+        const Points move = moves_of(mesh, edges, [&](const Vec3& p) -> Vec3 {
+            const std::optional<NearestPoint> near = inner.nearest_within(reach, p);
+            if (!near) return Vec3::Zero();
+            const Vec3 offset = p - near->point;
+            const double height = offset.dot(near->normal);
+            const double beside = (offset - height * near->normal).norm();
+            const double missing = gap * (1.0 - beside / reach) - height;
+            return missing > 0.0 ? Vec3((missing + kMargin) * near->normal) : Vec3(Vec3::Zero());
+        });
+        if (move.isZero(0.0)) return true;
+        mesh.vertices += spread(move, edges);
+    }
+    return false;
 }
 
 }  // namespace cloth

@@ -28,6 +28,9 @@ struct Obstacle {
     /// Mesh: limb of each face (|F|, 0 to 31), the same pointer for life; null: the mesh is one
     /// body. Cloth passes through limbs that are inside other limbs, see LimbOverlap.
     std::shared_ptr<const std::vector<std::uint8_t>> limbs;
+    /// Bit of the whole obstacle, as if it were a limb: vertices that ignore it do not touch the
+    /// obstacle. 0: all touch it. To be told apart from limbs of other obstacles.
+    LimbSet solid = 0;
     Points x0;                         ///< mesh: vertices at t (m)
     Points x1;                         ///< mesh: vertices at t + dt (m)
     Pose pose0 = Pose::Identity();     ///< primitive: frame at t
@@ -58,8 +61,8 @@ struct Boundary {
     Points pin_targets;                  ///< |pins| x 3 (m): where the garment's pins are at t + dt
     Vec3 gravity = Vec3(0, -9.81, 0);    ///< (m/s^2)
     Points accelerations;                ///< |V| x 3 (m/s^2) such as wind, or empty
-    std::vector<LimbSet> ignored_limbs;  ///< |V|: limbs that a vertex does not touch, or empty;
-                                         ///< LimbOverlap fills it
+    std::vector<LimbSet> ignored_limbs;  ///< |V|: limbs and solids that a vertex does not touch, or
+                                         ///< empty; LimbOverlap adds limbs
     /// Hierarchies of the mesh obstacles that all garments of a world share; null: whoever queries
     /// obstacles has its own. Results are the same. Leave it null for poses that only one garment
     /// meets, such as those of sub-steps: they would crowd out those of the world.

@@ -14,15 +14,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string garment_file(const std::string& name, const std::string& extension) {
+std::string asset_file(const std::string& name, const std::string& extension) {
     return asset_path("garments") + "/" + name + extension;
+}
+
+/// A garment of one's own, by its path: names of committed garments have no ending.
+bool is_path(const std::string& name) {
+    return fs::path(name).has_extension();
+}
+
+std::string worn_file(const std::string& name) {
+    if (!is_path(name)) return asset_file(name, ".worn.obj");
+    return fs::path(name).replace_extension(".worn.obj").string();
+}
+
+bool have_same_faces(const TriMesh& a, const TriMesh& b) {
+    return a.vertices.rows() == b.vertices.rows() && a.faces.rows() == b.faces.rows() &&
+           a.faces == b.faces;
 }
 
 /// Garments of one recipe differ in their number of vertices: pants_1000 is of pants.json.
 bool has_recipe(const std::string& name) {
     const size_t end = name.find_last_not_of("0123456789");
     const bool numbered = end != std::string::npos && end + 1 < name.size() && name[end] == '_';
-    return fs::exists(garment_file(numbered ? name.substr(0, end) : name, ".json"));
+    return fs::exists(asset_file(numbered ? name.substr(0, end) : name, ".json"));
 }
 
 }  // namespace
@@ -38,7 +53,8 @@ std::vector<std::string> garment_names() {
 }
 
 TriMesh load_garment_mesh(const std::string& name) {
-    const std::string path = garment_file(name, ".obj");
+    if (is_path(name)) return load_mesh(name);
+    const std::string path = asset_file(name, ".obj");
     if (!fs::exists(path)) {
         std::string names;
         for (const std::string& known : garment_names())
@@ -49,16 +65,16 @@ TriMesh load_garment_mesh(const std::string& name) {
 }
 
 Garment load_garment(const std::string& name, const Fabric& fabric) {
-    return Garment(name, load_garment_mesh(name), fabric);
+    return Garment(fs::path(name).stem().string(), load_garment_mesh(name), fabric);
 }
 
 ClothState load_garment_start(const std::string& name) {
     TriMesh mesh = load_garment_mesh(name);
-    const std::string path = garment_file(name, ".worn.obj");
+    const std::string path = worn_file(name);
     if (fs::exists(path)) {
         TriMesh worn = load_mesh(path);
-        if (worn.faces != mesh.faces)
-            throw LoadError(path, "", "its faces are not those of " + name + ".obj",
+        if (!have_same_faces(worn, mesh))
+            throw LoadError(path, "", "its faces are not those of " + name,
                             "make both files anew with make_garments");
         mesh = std::move(worn);
     }

@@ -12,7 +12,8 @@ namespace cloth {
 /// Where vertices are left out of a name, it has those that its recipe says.
 std::vector<std::string> garment_names();
 
-/// Rest mesh of a garment of data/assets/garments by its name.
+/// Rest mesh of a garment of data/assets/garments by its name; or of one of your own by the path of
+/// its file, which has an ending, such as my/shirt.obj.
 /// @throws LoadError naming the garments there are if there is no such one, or if its file is
 ///         damaged
 TriMesh load_garment_mesh(const std::string& name);
@@ -26,7 +27,7 @@ TriMesh load_garment_mesh(const std::string& name);
 Garment load_garment(const std::string& name, const Fabric& fabric = Fabric::soft_cotton());
 
 /// The garment as the default body wears it in its rest pose, not moving: outside of the body. A
-/// waistband is longer there than at rest; garments without one are worn at rest.
+/// waistband is longer there than at rest; garments without a file NAME.worn.obj are worn at rest.
 /// @throws LoadError as load_garment_mesh(), and if the worn shape has other faces
 ClothState load_garment_start(const std::string& name);
 

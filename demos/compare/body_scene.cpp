@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "collision/proximity/proximity.h"
 #include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
 
 namespace cloth {
+
+namespace fs = std::filesystem;
 
 Fabric fabric_named(const std::string& name) {
     if (name == "soft") return Fabric::soft_cotton();
@@ -17,17 +20,23 @@ Fabric fabric_named(const std::string& name) {
 
 void check_garment_name(const std::string& name) {
     const std::vector<std::string> names = garment_names();
-    if (std::find(names.begin(), names.end(), name) == names.end())
-        throw UsageError("garment " + name + ": choose one of " + join_list(names, ", "));
+    for (const std::string& part : outfit_parts(name))
+        if (!fs::exists(part) && std::find(names.begin(), names.end(), part) == names.end())
+            throw UsageError("garment " + part + ": choose one of " + join_list(names, ", ") +
+                             ", several joined by +, or give a mesh file");
 }
 
-static Garment garment_of(const BodySceneSettings& settings) {
+static Outfit outfit_of(const BodySceneSettings& settings) {
     check_garment_name(settings.garment);
-    return load_garment(settings.garment, fabric_named(settings.fabric));
+    return load_outfit(settings.garment, fabric_named(settings.fabric));
 }
 
-BodyScene::BodyScene(const BodySceneSettings& settings)
-    : ComparisonScene(garment_of(settings)), m_start(load_garment_start(settings.garment)) {
+BodyScene::BodyScene(const BodySceneSettings& settings) : BodyScene(settings, outfit_of(settings)) {
+}
+
+BodyScene::BodyScene(const BodySceneSettings& settings, const Outfit& outfit)
+    : ComparisonScene(outfit.garment), m_start(outfit.start) {
+    if (outfit.has_layers()) m_self_contact.thickness = Outfit::thickness;
     const auto body = std::make_shared<const Body>(Body::load_default());
     AnimationSettings animation;
     animation.limbs = settings.limbs;

@@ -4,13 +4,14 @@
 #include <string>
 
 #include "data/body/animated_body.h"
+#include "data/body/outfit.h"
 #include "demos/compare/comparison_scene.h"
 
 namespace cloth {
 
 /// Which garment, on which motion, for how long.
 struct BodySceneSettings {
-    std::string garment = "tshirt";  ///< of garment_names()
+    std::string garment = "tshirt";  ///< as load_outfit() takes it; layers have self-contact
     std::string fabric = "soft";     ///< see fabric_named()
     std::string motion = "01_01";
     int frames = 90;            ///< of the motion; 0: all
@@ -42,18 +43,23 @@ class BodyScene : public ComparisonScene {
     /// covers at its start, however the body bends.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
+    SelfContactSettings self_contact() const override { return m_self_contact; }
+
  private:
+    BodyScene(const BodySceneSettings& settings, const Outfit& outfit);
     void find_covered_skin();
     Vec3 middle_of_covered(const Points& skin) const;
 
     std::unique_ptr<AnimatedBody> m_body;
     ClothState m_start;
+    SelfContactSettings m_self_contact;
     int m_lead_in_frames = 30;
     std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest
     Vec3 m_start_offset;         ///< from their middle to the garment's, at its start (m)
 };
 
-/// @throws UsageError naming the garments there are if there is no such one
+/// @throws UsageError naming the garments there are if a part of the outfit is none of them, and no
+///         file
 void check_garment_name(const std::string& name);
 
 /// "soft": SNUG's cotton, 33 N/m; "real": cotton as measured, 5 kN/m.

@@ -30,7 +30,7 @@ CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::s
 }
 
 CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string& description) {
-    std::string text = description + ":", line;
+    std::string text = description + "; a+b: a worn over b; a mesh file; or one of", line;
     for (const std::string& name : garment_names()) {
         if (line.size() + name.size() > 60) {
             text += "\n" + line;

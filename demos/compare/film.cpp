@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "demos/compare/figure_meshes.h"
 #include "render/montage.h"
 #include "render/osmesa_renderer.h"
 #include "render/video.h"
@@ -14,9 +15,6 @@ namespace {
 constexpr int panel_width = 400;
 constexpr int panel_height = 560;
 constexpr int key_frame_count = 6;
-
-const Rgb garment_colours[] = {{196, 84, 72},   {86, 132, 196}, {92, 160, 96},   {214, 150, 62},
-                               {140, 102, 176}, {72, 164, 164}, {196, 112, 152}, {120, 120, 128}};
 
 std::string format(const char* pattern, double value) {
     char text[64];
@@ -71,13 +69,10 @@ class FilmStudio {
 
     Scene panel(const FilmPanel& film, size_t index, size_t frame, const Points& skin) const {
         Scene scene;
-        SceneMesh body;
-        body.vertices = skin;
-        body.faces = m_scene.body().faces();
-        body.colour = {222, 190, 170};
-        scene.meshes.push_back(body);
+        scene.meshes.push_back(skin_mesh(skin, m_scene.body().faces()));
         if (frame + 1 < film.trajectory->size())
-            scene.meshes.push_back(garment((*film.trajectory)[frame + 1].x, index));
+            scene.meshes.push_back(
+                garment_mesh((*film.trajectory)[frame + 1].x, m_cloth_faces, index));
         Label label;
         label.text = caption(film, frame);
         label.text_height = 20;
@@ -85,17 +80,6 @@ class FilmStudio {
         scene.labels.push_back(label);
         scene.ground.centre = skin.colwise().mean().transpose();
         return scene;
-    }
-
-    SceneMesh garment(const Points& x, size_t index) const {
-        SceneMesh cloth;
-        cloth.vertices = x;
-        cloth.faces = m_cloth_faces;
-        cloth.colour = garment_colours[index % std::size(garment_colours)];
-        cloth.back_colour = back_of(cloth.colour);
-        cloth.two_sided = true;
-        cloth.gloss = 0.0;
-        return cloth;
     }
 
     const BodyScene& m_scene;

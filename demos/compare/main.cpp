@@ -111,13 +111,6 @@ void run_stage(const CompareOptions& options, const std::string& stage) {
         throw std::runtime_error("the process for " + stage + " failed; see above");
 }
 
-/// A wrong name of a solver fails at once, and not after the others have run.
-void check_names(const CompareOptions& options) {
-    const BodyScene scene(scene_settings(options));
-    for (const std::string& solver : options.solvers)
-        make_solver(solver, scene, solver_settings(options));
-}
-
 json scene_json(const CompareOptions& options, const BodyScene& scene) {
     return {{"garment", options.garment},
             {"vertices", scene.garment().vertex_count()},
@@ -131,12 +124,14 @@ json scene_json(const CompareOptions& options, const BodyScene& scene) {
 }
 
 void compare(const CompareOptions& options) {
-    check_names(options);
+    const BodyScene scene(scene_settings(options));
+    // A wrong name fails at once, and not after the others have run.
+    for (const std::string& solver : options.solvers)
+        make_solver(solver, scene, solver_settings(options));
     prepare_work_folder(options);
     for (const char* stage : {"settle", "fine", "reference"}) run_stage(options, stage);
     for (const std::string& solver : options.solvers) run_stage(options, solver);
 
-    const BodyScene scene(scene_settings(options));
     const int threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
     json report = {{"provenance", provenance_json(threads)},
                    {"scene", scene_json(options, scene)},

@@ -81,7 +81,7 @@ std::vector<DataSet> data_sets() {
         motions("motions_no_limbs", " --no-limbs"),
         {"bullet_scenes",
          figures + "bullet_scenes.json",
-         "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes"
+         "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene small"
          " --solvers bullet,quasi-newton-3,small --no-videos --out OUT",
          "bullet_scenes.json",
          {},

@@ -16,8 +16,9 @@ int main() {
     const std::string file = cloth::asset_path("weights/small.safetensors");
     cloth::ClothSettings settings;
     settings.weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
+    btGnnSolverSettings soft{cloth::Fabric::soft_cotton()};  // which the network knows
     btGnnSoftBodySolver solver(
-        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
+        [&](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); }, soft);
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
     btDbvtBroadphase broadphase;

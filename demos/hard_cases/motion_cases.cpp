@@ -30,6 +30,7 @@ HardSceneParts parts_of(const std::shared_ptr<const BodyScene>& scene,
                              return scene->boundary(scene_time(t0), scene_time(t1));
                          }};
     parts.segments = scene->segments();
+    parts.self_contact = scene->self_contact();
     parts.limbs = scene->has_limbs();
     parts.loss = [scene](const Boundary& boundary, const Points& x) {
         return scene->loss(boundary, x);

@@ -1,5 +1,6 @@
 #include "demos/make_garments/lookbook.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -7,7 +8,8 @@
 #include "data/body/animated_body.h"
 #include "data/body/body_shapes.h"
 #include "data/body/garment_fit.h"
-#include "data/files/garment_assets.h"
+#include "data/body/outfit.h"
+#include "demos/compare/figure_meshes.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "render/montage.h"
 #include "render/osmesa_renderer.h"
@@ -17,8 +19,6 @@ namespace {
 
 constexpr int width = 300, height = 480;  // of a panel (pixels)
 constexpr double frame_time = 1.0 / 30.0;
-const Rgb colours[] = {{196, 84, 72},   {86, 132, 196}, {92, 160, 96},   {214, 150, 62},
-                       {140, 102, 176}, {72, 164, 164}, {196, 112, 152}, {120, 120, 128}};
 
 struct Wearer {
     std::string name;
@@ -43,6 +43,19 @@ std::vector<Wearer> wearers() {
     return all;
 }
 
+Faces faces_of_part(const Outfit& outfit, size_t part) {
+    const Faces& all = outfit.garment.rest().faces;
+    const auto is_of_part = [&](Eigen::Index f) {
+        return all(f, 0) >= outfit.first_vertex[part] && all(f, 0) < outfit.first_vertex[part + 1];
+    };
+    Faces faces(all.rows(), 3);
+    Eigen::Index count = 0;
+    for (Eigen::Index f = 0; f < all.rows(); ++f)
+        if (is_of_part(f)) faces.row(count++) = all.row(f);
+    faces.conservativeResize(count, 3);
+    return faces;
+}
+
 class Studio {
  public:
     explicit Studio(const LookbookSettings& settings)
@@ -50,10 +63,12 @@ class Studio {
 
     void add_row(size_t index) {
         const std::string& name = m_settings.garments[index];
-        const Garment original = load_garment(name);
-        const ClothState worn = load_garment_start(name);
+        const Outfit outfit = load_outfit(name);
+        const Garment& original = outfit.garment;
+        const ClothState& worn = outfit.start;
         const Body& standard = *m_wearers.front().body;
-        m_panels.push_back(draw(standard.rest(), standard, original, worn.x, index));
+        const ClothStepperSettings settings = stepper_settings(outfit.has_layers());
+        m_panels.push_back(draw(standard.rest(), standard, outfit, worn.x, index));
         m_captions.push_back(name + ", put on");
         for (const Wearer& wearer : m_wearers) {
             ClothState state = worn;
@@ -64,9 +79,11 @@ class Studio {
             const Garment garment(
                 name, {original.rest().vertices + (state.x - worn.x), original.rest().faces},
                 original.fabric());
-            const AnimatedBody body(wearer.body, load_motion_by_name(m_settings.motion));
-            const double end = wear(garment, body, state);
-            m_panels.push_back(draw(body.vertices(end), *wearer.body, garment, state.x, index));
+            AnimationSettings animation;
+            animation.limbs = true;
+            const AnimatedBody body(wearer.body, load_motion_by_name(m_settings.motion), animation);
+            const double end = wear(garment, body, settings, state);
+            m_panels.push_back(draw(body.vertices(end), *wearer.body, outfit, state.x, index));
             m_captions.push_back(wearer.name);
             std::printf("%s on %s\n", name.c_str(), wearer.name.c_str());
             std::fflush(stdout);
@@ -88,11 +105,19 @@ class Studio {
         return settings;
     }
 
+    static ClothStepperSettings stepper_settings(bool layers) {
+        auto settings = ClothStepperSettings::plain(IterationLimits::exactly(10));
+        if (layers) settings.step.potential.self_contact.thickness = Outfit::thickness;
+        return settings;
+    }
+
     /// @return the time at the end (s)
-    double wear(const Garment& garment, const AnimatedBody& body, ClothState& state) const {
-        ClothStepper stepper(garment, ClothStepperSettings::plain(IterationLimits::exactly(10)));
+    double wear(const Garment& garment, const AnimatedBody& body,
+                const ClothStepperSettings& settings, ClothState& state) const {
+        ClothStepper stepper(garment, settings);
         const int lead_in = static_cast<int>(std::lround(body.settings().lead_in / frame_time));
-        const int steps = lead_in + m_settings.frames;
+        const int last = body.frame_count(frame_time) - 1;
+        const int steps = std::min(lead_in + m_settings.frames, last);
         Boundary boundary;
         boundary.pin_targets.resize(0, 3);
         for (int step = 0; step < steps; ++step) {
@@ -102,22 +127,13 @@ class Studio {
         return steps * frame_time;
     }
 
-    Image draw(const Points& skin, const Body& body, const Garment& garment, const Points& x,
+    Image draw(const Points& skin, const Body& body, const Outfit& outfit, const Points& x,
                size_t index) {
         Scene scene;
-        SceneMesh person;
-        person.vertices = skin;
-        person.faces = body.faces();
-        person.colour = {222, 190, 170};
-        scene.meshes.push_back(person);
-        SceneMesh cloth;
-        cloth.vertices = x;
-        cloth.faces = std::make_shared<Faces>(garment.rest().faces);
-        cloth.colour = colours[index % std::size(colours)];
-        cloth.back_colour = back_of(cloth.colour);
-        cloth.two_sided = true;
-        cloth.gloss = 0.0;
-        scene.meshes.push_back(cloth);
+        scene.meshes.push_back(skin_mesh(skin, body.faces()));
+        for (size_t part = 0; part + 1 < outfit.first_vertex.size(); ++part)
+            scene.meshes.push_back(garment_mesh(
+                x, std::make_shared<Faces>(faces_of_part(outfit, part)), index + part));
         scene.ground.centre = skin.colwise().mean().transpose();
         FigureTracker tracker(FramingSettings{}, static_cast<double>(width) / height);
         return m_renderer.render(scene, tracker.follow(skin));

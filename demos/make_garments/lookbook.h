@@ -10,7 +10,7 @@ namespace cloth {
 struct LookbookSettings {
     std::vector<std::string> garments;  ///< of garment_names()
     std::string motion = "01_01";       ///< as load_motion_by_name() takes it
-    int frames = 90;                    ///< of 1/30 s into the motion, 1 to 100000
+    int frames = 90;                    ///< of 1/30 s into the motion, 1 to 100000; its end at most
 };
 
 /// A row for each garment: on the default body as it is put on, then after some frames of the

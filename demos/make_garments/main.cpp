@@ -2,8 +2,10 @@
 // --help.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -67,9 +69,12 @@ Options parse_options(const std::vector<std::string>& arguments) {
 }
 
 std::string recipe_file(const std::string& garment) {
-    return std::filesystem::path(garment).extension() == ".json"
-               ? garment
-               : asset_path("garments/" + garment + ".json");
+    if (std::filesystem::path(garment).extension() == ".json") return garment;
+    const std::vector<std::string> known(std::begin(all_garments), std::end(all_garments));
+    if (std::find(known.begin(), known.end(), garment) == known.end())
+        throw UsageError("garment " + garment + ": choose one of " + join_list(known, ", ") +
+                         ", or give a recipe file");
+    return asset_path("garments/" + garment + ".json");
 }
 
 /// The body that garments are made for, and its landmarks as far as they are known.

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "collision/self/self_tangles.h"
 #include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
+#include "demos/compare/solver_factory.h"
 
 using namespace cloth;
 
@@ -46,7 +48,32 @@ TEST(BodyScene, GarmentsWithAWaistbandStartAsTheyAreWorn) {
     EXPECT_EQ(scene.loss(scene.boundary(time, time), start.x), "");
 }
 
+TEST(BodyScene, LayersOfAnOutfitKeepOffEachOther) {
+    BodySceneSettings settings;
+    settings.garment = "tshirt_1000+pants_1000";
+    const BodyScene scene(settings);
+    EXPECT_GT(scene.self_contact().thickness, 0.0);
+    EXPECT_FALSE(BodyScene(small_shirt()).self_contact().on());
+    const SolverSettings solvers;
+    const auto stepper = make_solver("quasi-newton-10", scene, solvers);
+    SelfTangles tangles(scene.garment());
+    ClothState state = scene.start();
+    const int first = -scene.lead_in_frames();
+    for (int frame = first; frame < first + 12; ++frame) {
+        EXPECT_EQ(tangles.find(state.x).size(), 0u) << "frame " << frame;
+        const StepReport report =
+            stepper->step(scene.boundary(frame * ComparisonScene::frame_time,
+                                         (frame + 1) * ComparisonScene::frame_time),
+                          ComparisonScene::frame_time, state);
+        EXPECT_TRUE(report.finite);
+        EXPECT_LT(report.max_penetration, 1e-3);
+    }
+}
+
 TEST(BodyScene, AWrongGarmentIsAnsweredWithTheRightOnes) {
+    EXPECT_THROW(check_garment_name("tshirt+toga"), UsageError);
+    check_garment_name("tshirt+pants");
+
     try {
         check_garment_name("toga");
         FAIL() << "there is no toga";

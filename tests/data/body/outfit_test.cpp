@@ -1,0 +1,66 @@
+#include "data/body/outfit.h"
+
+#include <gtest/gtest.h>
+
+#include "data/body/body.h"
+#include "data/core/errors.h"
+#include "data/core/surface_distance.h"
+#include "data/files/garment_assets.h"
+
+using namespace cloth;
+
+namespace {
+
+TriMesh worn_part(const Outfit& outfit, const std::string& name, size_t part) {
+    const int first = outfit.first_vertex[part];
+    return {outfit.start.x.middleRows(first, outfit.first_vertex[part + 1] - first),
+            load_garment_mesh(name).faces};
+}
+
+TEST(Outfit, ASingleNameIsThatGarment) {
+    const Outfit outfit = load_outfit("pants_1000");
+    EXPECT_FALSE(outfit.has_layers());
+    EXPECT_EQ(outfit.garment.rest().vertices, load_garment_mesh("pants_1000").vertices);
+    EXPECT_EQ(outfit.start.x, load_garment_start("pants_1000").x);
+    EXPECT_EQ(outfit.first_vertex,
+              (std::vector<int>{0, static_cast<int>(outfit.garment.vertex_count())}));
+}
+
+TEST(Outfit, TheFirstIsWornOverTheOthers) {
+    const std::vector<std::string> names = {"shirt_1000", "tshirt_1000", "pants_1000"};
+    const Outfit outfit = load_outfit("shirt_1000+tshirt_1000+pants_1000");
+    ASSERT_EQ(outfit.first_vertex.size(), 4u);
+    EXPECT_TRUE(outfit.has_layers());
+    for (size_t outer = 0; outer < names.size(); ++outer)
+        for (size_t inner = outer + 1; inner < names.size(); ++inner) {
+            const SurfaceDistance below(worn_part(outfit, names[inner], inner));
+            const TriMesh above = worn_part(outfit, names[outer], outer);
+            int close = 0;
+            for (Eigen::Index i = 0; i < above.vertices.rows(); ++i) {
+                const Vec3 p = above.vertices.row(i);
+                const auto near = below.nearest_within(0.02, p);
+                if (!near) continue;
+                const double height = (p - near->point).dot(near->normal);
+                if ((p - near->point).norm() - height > 1e-6) continue;  // beside a border
+                ++close;
+                EXPECT_GT(height, Outfit::gap - 1e-6) << names[outer] << " over " << names[inner];
+            }
+            EXPECT_GT(close, 20) << names[outer] << " over " << names[inner];
+        }
+}
+
+TEST(Outfit, TheInnermostIsWornAsAlone) {
+    const Outfit outfit = load_outfit("tshirt_1000+pants_1000");
+    EXPECT_EQ(worn_part(outfit, "pants_1000", 1).vertices, load_garment_start("pants_1000").x);
+    const Body body = Body::load_default();
+    EXPECT_GT(
+        smallest_clearance(worn_part(outfit, "tshirt_1000", 0), SurfaceDistance(body.rest_mesh())),
+        4e-3);
+}
+
+TEST(Outfit, WrongNamesAreNamed) {
+    EXPECT_THROW(load_outfit("tshirt_1000+toga"), LoadError);
+    EXPECT_THROW(load_outfit(""), LoadError);
+}
+
+}  // namespace
