@@ -19,6 +19,7 @@
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
+#include "data/files/garment_assets.h"
 #include "gnn/train/trainer.h"
 
 namespace {
@@ -103,8 +104,8 @@ Options parse(int count, char** arguments) {
     add("--iterations", settings.iterations, "N", "end after so many iterations");
     add("--pool", settings.pool, "N", "scenes trained on in turn (40)");
     add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
-    add("--garment", garment, "FILE",
-        "train on this garment of data/assets/garments alone, by its file or name");
+    add("--garment", garment, "NAME",
+        "train on this garment alone: a name of data/assets/garments, or a file of yours");
     add("--seed", settings.seed, "S", "(1)");
     add("--threads", settings.threads, "N", "of LibTorch (1)");
     add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
@@ -133,6 +134,10 @@ Options parse(int count, char** arguments) {
         "motions (those of the shared data folder, else 01_01)", validation)
         ->delimiter(',')
         ->take_all();
+    add("--validation-garments", settings.rollouts.garments, "A,B,...",
+        "of those trained on (tshirt,pants_1000,dress_1000)", validation)
+        ->delimiter(',')
+        ->take_all();
     add("--validation-frames", settings.rollouts.frames, "N", "of a rollout (90)", validation);
     add("--validation-sheet", settings.rollouts.sheet_vertices, "N",
         "vertices of the sheets; 0: none (1000)", validation);
@@ -145,8 +150,10 @@ Options parse(int count, char** arguments) {
     } catch (const CLI::ParseError& error) {
         std::exit(app.exit(error));  // help, or what is wrong
     }
-    if (!garment.empty())
-        settings.scenes.garments = {std::filesystem::path(garment).stem().string()};
+    if (!garment.empty()) {
+        cloth::load_garment_start(garment);  // throws before hours are spent on sheets alone
+        settings.scenes.garments = {garment};
+    }
     return options;
 }
 

@@ -49,8 +49,9 @@ std::uint64_t fingerprint(const Garment& garment, const ClothState& start) {
 
 struct RolloutValidation::Scene {
     std::string name;
+    std::string garment;  ///< empty: a sheet
     std::unique_ptr<TrainingScene> scene;
-    int lead_in = 0;
+    int lead_in = 0;                ///< frames
     std::vector<Points> reference;  ///< after the lead-in, and after each frame
     Points start_velocities;
 
@@ -79,28 +80,41 @@ RolloutValidation::RolloutValidation(const SceneFactory& factory, const RolloutS
     : m_settings(settings), m_folder(folder) {
     m_settings.check();
     if (m_settings.clips.empty()) m_settings.clips = default_clips();
-    if (factory.has_garments())
-        for (const std::string& clip : m_settings.clips)
-            add(std::filesystem::path(clip).stem().string(),
-                factory.make_garment(1, clip, m_settings.garment), -1);
+    if (factory.has_garments()) add_garments(factory);
     if (m_settings.sheet_vertices == 0) return;
     for (const bool held : {true, false})
-        add(held ? "sheet-hanging" : "sheet-sphere",
-            factory.finish(make_test_sheet(m_settings.sheet_vertices, held)), 0);
+        m_scenes.push_back(std::make_unique<Scene>(
+            Scene{held ? "sheet-hanging" : "sheet-sphere",
+                  "",
+                  factory.finish(make_test_sheet(m_settings.sheet_vertices, held)),
+                  0,
+                  {},
+                  {}}));
 }
 
 RolloutValidation::~RolloutValidation() = default;
 
-/// @param lead_in  frames; negative: that of bodies
-void RolloutValidation::add(const std::string& name, std::unique_ptr<TrainingScene> scene,
-                            int lead_in) {
-    auto added = std::make_unique<Scene>();
-    added->name = name;
-    if (lead_in < 0)
-        lead_in = static_cast<int>(std::lround(AnimationSettings().lead_in / scene->dt()));
-    added->lead_in = lead_in;
-    added->scene = std::move(scene);
-    m_scenes.push_back(std::move(added));
+void RolloutValidation::add_garments(const SceneFactory& factory) {
+    const std::vector<std::string> known = factory.garment_names();
+    std::vector<size_t> chosen;
+    for (const std::string& name : m_settings.garments) {
+        const auto found = std::find(known.begin(), known.end(), name);
+        if (found != known.end()) chosen.push_back(static_cast<size_t>(found - known.begin()));
+    }
+    if (chosen.empty()) chosen.push_back(known.size() - 1);
+    for (const size_t index : chosen)
+        for (const std::string& clip : m_settings.clips) {
+            auto scene = factory.make_garment(1, clip, index);
+            const int lead_in =
+                static_cast<int>(std::lround(AnimationSettings().lead_in / scene->dt()));
+            m_scenes.push_back(
+                std::make_unique<Scene>(Scene{std::filesystem::path(clip).stem().string(),
+                                              known[index],
+                                              std::move(scene),
+                                              lead_in,
+                                              {},
+                                              {}}));
+        }
 }
 
 /// @return false: stopped
@@ -190,7 +204,7 @@ std::optional<std::vector<RolloutResult>> RolloutValidation::measure(
             const auto stepper = make_cloth(scene->scene->garment(), settings);
             RolloutResult result;
             result.scene = scene->name;
-            result.is_sheet = scene->scene->parts().kind == "sheet";
+            result.garment = scene->garment;
             result.iterations = iterations;
             result.frames = m_settings.frames;
             if (!roll(*scene, *stepper, result, stop)) return std::nullopt;
@@ -204,7 +218,7 @@ RolloutSummary summarise(const std::vector<RolloutResult>& results, bool sheets,
     RolloutSummary sum;
     int count = 0;
     for (const RolloutResult& result : results) {
-        if (result.is_sheet != sheets || result.iterations != iterations) continue;
+        if (result.is_sheet() != sheets || result.iterations != iterations) continue;
         sum.held += result.held;
         sum.distance_mm += 1e3 * result.distance;
         sum.stretch += result.stretch;

@@ -17,7 +17,9 @@ struct RolloutSettings {
     /// Motions, as load_motion_by_name() takes them; empty: those of the shared data folder's
     /// motions/validation, else 01_01.
     std::vector<std::string> clips;
-    size_t garment = 99;        ///< index into the factory's garments, the last if out of range
+    /// Each is dressed on each clip; those that the factory has not are left out, and where it has
+    /// none of them its last one is taken.
+    std::vector<std::string> garments = {"tshirt", "pants_1000", "dress_1000"};
     int sheet_vertices = 1000;  ///< of the hanging sheet and of that on a sphere, 9 to 200,000; 0:
                                 ///< no sheets
     int frames = 90;            ///< after the lead-in, 1 to 10,000
@@ -37,8 +39,9 @@ struct RolloutSettings {
 struct RolloutResult {
     static constexpr double lost_distance = 0.3;  ///< (m)
 
-    std::string scene;  ///< motion, "sheet-hanging" or "sheet-sphere"
-    bool is_sheet = false;
+    std::string scene;    ///< motion, "sheet-hanging" or "sheet-sphere"
+    std::string garment;  ///< empty: a sheet
+    bool is_sheet() const { return garment.empty(); }
     int iterations = 0;   ///< after the network
     int frames = 0;       ///< of the scene
     int held = 0;         ///< frames before the failure
@@ -73,7 +76,7 @@ class RolloutValidation {
 
  private:
     struct Scene;
-    void add(const std::string& name, std::unique_ptr<TrainingScene> scene, int lead_in);
+    void add_garments(const SceneFactory& factory);
     bool find_reference(Scene& scene, const std::atomic<bool>& stop) const;
     bool roll(const Scene& scene, Stepper& stepper, RolloutResult& result,
               const std::atomic<bool>& stop) const;

@@ -43,7 +43,7 @@ MetricsFile::Row metrics_columns(const std::vector<int>& iterations) {
                                 "gap_sheet_median",
                                 "gap_sheet_p95",
                                 "error_sheet_mm"};
-    for (const char* scene : {"tshirt", "sheet"})
+    for (const char* scene : {"garment", "sheet"})
         for (const int count : iterations)
             for (const char* value : {"frames", "mm", "stretch"})
                 columns.push_back(std::string(scene) + "_rollout_" + std::to_string(count) + "_" +
@@ -53,8 +53,8 @@ MetricsFile::Row metrics_columns(const std::vector<int>& iterations) {
 }
 
 MetricsFile::Row rollout_columns() {
-    return {"iteration", "scene",   "iterations", "frames",        "held",
-            "failure",   "mean_mm", "stretch",    "penetration_mm"};
+    return {"iteration", "scene",   "garment", "iterations", "frames",
+            "held",      "failure", "mean_mm", "stretch",    "penetration_mm"};
 }
 
 /// "3 h 07 min"
@@ -190,10 +190,10 @@ void Trainer::write_row(const Validated& validated) {
     row.push_back(cell(done ? validated.seconds : none));
     m_run->metrics.append(row);
     for (const RolloutResult& result : validated.rollouts)
-        m_run->rollouts.append({cell(m_iteration), result.scene, std::to_string(result.iterations),
-                                std::to_string(result.frames), std::to_string(result.held),
-                                result.failure, cell(1e3 * result.distance), cell(result.stretch),
-                                cell(1e3 * result.penetration)});
+        m_run->rollouts.append(
+            {cell(m_iteration), result.scene, result.garment, std::to_string(result.iterations),
+             std::to_string(result.frames), std::to_string(result.held), result.failure,
+             cell(1e3 * result.distance), cell(result.stretch), cell(1e3 * result.penetration)});
 }
 
 /// Of the clock (s), by the speed since this run began.
@@ -220,9 +220,9 @@ void Trainer::say(const Validated& validated) const {
                  steps.tshirt.median, steps.tshirt.error_mm, steps.sheet.median,
                  steps.sheet.error_mm);
     for (const RolloutResult& result : validated.rollouts)
-        std::fprintf(stderr, "  %s +%d: %d of %d frames, %.0f mm, stretch %.2f %s\n",
-                     result.scene.c_str(), result.iterations, result.held, result.frames,
-                     1e3 * result.distance, result.stretch, result.failure.c_str());
+        std::fprintf(stderr, "  %s %s +%d: %d of %d frames, %.0f mm, stretch %.2f %s\n",
+                     result.scene.c_str(), result.garment.c_str(), result.iterations, result.held,
+                     result.frames, 1e3 * result.distance, result.stretch, result.failure.c_str());
 }
 
 }  // namespace cloth

@@ -101,6 +101,12 @@ bool SceneFactory::has_garments() const {
            !m_assets->motions.empty();
 }
 
+std::vector<std::string> SceneFactory::garment_names() const {
+    std::vector<std::string> names;
+    for (const Assets::Wardrobe& garment : m_assets->garments) names.push_back(garment.name);
+    return names;
+}
+
 std::unique_ptr<TrainingScene> SceneFactory::finish(SceneParts parts, std::uint64_t seed) const {
     parts.seed = seed;
     if (!parts.graph)

@@ -52,6 +52,8 @@ class SceneFactory {
     std::unique_ptr<TrainingScene> finish(SceneParts parts, std::uint64_t seed = 0) const;
 
     bool has_garments() const;
+    /// Those that loaded, in the order of make_garment()'s index.
+    std::vector<std::string> garment_names() const;
 
  private:
     struct Assets;

@@ -63,7 +63,7 @@ TEST_F(Rollouts, IterationsAfterTheNetworkComeNearToTheReference) {
         const RolloutResult &alone = results[scene], &refined = results[scene + 1];
         EXPECT_EQ(alone.iterations, 0);
         EXPECT_EQ(refined.iterations, 30);
-        EXPECT_TRUE(refined.is_sheet);
+        EXPECT_TRUE(refined.is_sheet());
         EXPECT_EQ(refined.held, 8);
         EXPECT_EQ(refined.failure, "");
         EXPECT_LT(refined.distance, 0.25 * alone.distance);
@@ -112,7 +112,7 @@ TEST_F(Rollouts, StopWhenTold) {
 
 TEST_F(Rollouts, SummariseEachNumberOfIterations) {
     RolloutResult a, b, shirt;
-    a.is_sheet = b.is_sheet = true;
+    shirt.garment = "tshirt";
     a.held = 10;
     b.held = 20;
     a.distance = 0.01;
@@ -124,6 +124,33 @@ TEST_F(Rollouts, SummariseEachNumberOfIterations) {
     EXPECT_DOUBLE_EQ(summarise(results, true, 0).distance_mm, 20.0);
     EXPECT_DOUBLE_EQ(summarise(results, false, 3).held, 90.0);
     EXPECT_TRUE(std::isnan(summarise(results, false, 0).held));
+}
+
+TEST_F(Rollouts, DressEachGarment) {
+    SceneSettings scenes;
+    scenes.garments = {"skirt_1000", "shorts_1000", "tshirt_1000"};
+    scenes.motions = {"01_03"};
+    const SceneFactory factory(tiny_model(), scenes, 1);
+    if (!factory.has_garments()) GTEST_SKIP() << "no body or motions here";
+    m_settings.sheet_vertices = 0;
+    m_settings.frames = 1;
+    m_settings.reference_iterations = 1;
+    m_settings.iterations = {1};
+    m_settings.clips = {"01_01"};
+    const auto dressed = [&](std::vector<std::string> garments) {
+        m_settings.garments = std::move(garments);
+        std::string all;
+        RolloutValidation validation(factory, m_settings, m_folder);
+        const auto results = validation.measure(random_weights(0.0f), m_go);
+        for (const RolloutResult& result : *results) {
+            EXPECT_FALSE(result.is_sheet());
+            all += result.scene + " " + result.garment + "; ";
+        }
+        return all;
+    };
+    EXPECT_EQ(dressed({"shorts_1000", "toga", "skirt_1000"}),
+              "01_01 shorts_1000; 01_01 skirt_1000; ");
+    EXPECT_EQ(dressed({"toga"}), "01_01 tshirt_1000; ") << "the last one there";
 }
 
 TEST_F(Rollouts, RefuseSettingsOutOfRange) {
