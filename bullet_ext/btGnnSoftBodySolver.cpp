@@ -2,6 +2,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btBroadphaseInterface.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
+#include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,36 @@ Garment scaledGarment(const Garment& garment, double factor) {
     return Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins(), curved);
 }
 
+/// What cloth and bodies did to each other that a user should know of.
+std::vector<std::string> troublesOf(const btSoftBody& body,
+                                    const cloth::SoftBodyStep::Result& result) {
+    std::vector<std::string> troubles;
+    const std::string name = cloth::softBodyName(body);
+    if (result.calmed)
+        troubles.push_back(
+            name +
+            ": cloth and rigid bodies would have made energy in a step, which was taken away. "
+            "Remedy: if it looks stiff, smaller time steps, or masses that differ less");
+    if (result.caught_nodes > 0)
+        troubles.push_back(
+            name +
+            ": bodies that close on it leave it no room, so it passes through the lighter one. "
+            "Remedy: smaller time steps, or bodies that sink less into each other");
+    if (result.stretched_anchor >= 0)
+        troubles.push_back(
+            name + ": node " + std::to_string(result.stretched_anchor) +
+            ": its anchor is farther away than the cloth reaches, an edge there is over twice as "
+            "long as at rest. Remedy: anchor the node where it is, or take a stiffer fabric");
+    return troubles;
+}
+
+/// Whether Bullet would let the two collide, and their boxes meet.
+bool askForContact(const btSoftBody& a, const btSoftBody& b) {
+    constexpr int kSoftContact = btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::CL_SS;
+    return (a.m_cfg.collisions & b.m_cfg.collisions & kSoftContact) != 0 &&
+           TestAabbAgainstAabb2(a.m_bounds[0], a.m_bounds[1], b.m_bounds[0], b.m_bounds[1]);
+}
+
 /// A number that a body gets when it is added to a world; 0 if it is in none.
 int worldIdOf(const btSoftBody& body) {
     const btBroadphaseProxy* proxy = body.getBroadphaseHandle();
@@ -83,6 +114,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
     Entry& entry = m_entries[body];
     entry.detached = false;
+    entry.asked = true;
     entry.worldId = 0;
     build(*body, entry);
 }
@@ -95,6 +127,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
     entry.given = std::make_shared<const Garment>(garment);
     entry.factory = std::move(factory);
     entry.detached = false;
+    entry.asked = true;
     entry.worldId = 0;
     build(*body, entry);
 }
@@ -107,36 +140,50 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const cloth::Fabric& fabric,
     entry.fabric = fabric;
     entry.factory = std::move(factory);
     entry.detached = false;
+    entry.asked = true;
     entry.worldId = 0;
     build(*body, entry);
 }
 
 void btGnnSoftBodySolver::detach(btSoftBody* body) {
     Entry& entry = m_entries[body];
-    entry.step.reset();
-    entry.stepping = Stepping::bullet;
+    if (body) leaveToBullet(*body, entry);
     entry.detached = true;
     entry.worldId = 0;
 }
 
-/// Makes garment and stepper of the body as it is now.
-void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
+void btGnnSoftBodySolver::leaveToBullet(btSoftBody& body, Entry& entry) {
+    if (entry.step) entry.handover = cloth::BulletHandover(body);
     entry.step.reset();
     entry.stepping = Stepping::bullet;
+}
+
+/// Makes garment and stepper of the body as it is now.
+void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
+    leaveToBullet(body, entry);
     entry.failures = 0;
     entry.topology = cloth::topologySignature(body);
-    entry.linkLength = cloth::meanLinkLength(body);
+    entry.restLengths = cloth::restLengths(body);
     if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
     cloth::checkCloth(body);
     if (entry.given) cloth::checkGarmentFits(body, *entry.given);
     auto garment = std::make_unique<const Garment>(garmentFor(body, entry));
+    if (!entry.asked && cloth::isClosed(body)) {
+        entry.detached = true;  // for good: what is cut open later shall not collapse, either
+        throw ArgumentError(cloth::softBodyName(body),
+                            "its surface is closed, so Bullet steps it: its links and bending "
+                            "links hold it up, and cloth would collapse",
+                            "call attach() if it is cloth");
+    }
     std::unique_ptr<cloth::Stepper> stepper =
         entry.factory ? entry.factory(*garment) : m_factory(*garment);
     if (!stepper)
         throw ArgumentError(cloth::softBodyName(body), "the stepper factory returned null",
                             "return a Stepper or throw an error that says why there is none");
-    entry.step = std::make_unique<cloth::SoftBodyStep>(body, std::move(garment), std::move(stepper),
-                                                       m_settings.sleepMotion);
+    entry.step = std::make_unique<cloth::SoftBodyStep>(
+        body, std::move(garment), std::move(stepper), m_settings.sleepMotion,
+        m_settings.friction == btGnnFriction::bullet);
+    entry.handover.end(body);
     if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
 }
@@ -144,10 +191,9 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
 Garment btGnnSoftBodySolver::garmentFor(const btSoftBody& body, const Entry& entry) const {
     if (entry.given) return entry.given->with_pins(cloth::pinnedNodes(body));
     if (entry.fabric) return cloth::garmentOfSoftBody(body, *entry.fabric, false);
-    const cloth::Fabric& fabric = m_settings.fabric;
-    return cloth::garmentOfSoftBody(
-        body, m_settings.useBodyMaterials ? cloth::fabricOfMaterials(body, fabric.density) : fabric,
-        m_settings.useBodyDensity);
+    if (m_settings.fabric)
+        return cloth::garmentOfSoftBody(body, *m_settings.fabric, m_settings.useBodyDensity);
+    return cloth::garmentOfSoftBody(body, cloth::fabricOfMaterials(body), false);
 }
 
 void btGnnSoftBodySolver::tryBuild(btSoftBody& body, Entry& entry) {
@@ -162,14 +208,13 @@ void btGnnSoftBodySolver::tryBuild(btSoftBody& body, Entry& entry) {
 void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
     if (entry.detached) return;
     if (!cloth::isCloth(body)) {
-        entry.step.reset();
-        entry.stepping = Stepping::bullet;
+        leaveToBullet(body, entry);
         entry.topology = 0;  // look again if it becomes cloth
         return;
     }
     const bool changed = cloth::topologySignature(body) != entry.topology;
     const bool healed = entry.stepping == Stepping::frozen && hasFiniteNodes(body);
-    if (changed) entry.given = nullptr;
+    if (changed) followCut(body, entry);
     if (changed || healed) return tryBuild(body, entry);
     if (entry.stepping != Stepping::cloth) {
         if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
@@ -178,11 +223,36 @@ void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
     followScale(body, entry);
 }
 
+/// The garment with the nodes and faces that were added; none where it cannot be told, then it is
+/// made anew.
+void btGnnSoftBodySolver::followCut(btSoftBody& body, Entry& entry) {
+    entry.given = nullptr;
+    if (!entry.step) return;
+    try {
+        std::optional<Garment> cut =
+            cloth::garmentAfterCut(body, entry.step->garment(), entry.step->shown());
+        if (cut) entry.given = std::make_shared<const Garment>(std::move(*cut));
+    } catch (const ArgumentError&) {
+        return;  // build() says what is wrong
+    }
+}
+
+/// By how much the user has scaled the body since the last step: all rest lengths have changed by
+/// one factor (setRestLengthScale()), or all are one factor times the lengths that were shown
+/// (scale()). Others, such as setMass(), give them the lengths of now, each by another factor.
+double btGnnSoftBodySolver::scaleOf(const btSoftBody& body, Entry& entry) const {
+    std::vector<double> lengths = cloth::restLengths(body);
+    std::optional<double> factor = cloth::commonFactor(entry.restLengths, lengths);
+    if (!factor && lengths.size() == entry.restLengths.size())
+        factor = cloth::commonFactor(cloth::lengthsAt(body, entry.step->shown()), lengths);
+    entry.restLengths = std::move(lengths);
+    return factor.value_or(1.0);
+}
+
 /// New pins or another size: the same rest shape in a new garment. Masses that are not finite
 /// freeze the body, which has its rest shape again when they are mended.
 void btGnnSoftBodySolver::followScale(btSoftBody& body, Entry& entry) {
-    const double length = cloth::meanLinkLength(body);
-    const double factor = entry.linkLength > 0.0 ? length / entry.linkLength : 1.0;
+    const double factor = scaleOf(body, entry);
     const bool scaled = std::abs(factor - 1.0) > 0.1;
     std::vector<int> pins = cloth::pinnedNodes(body);
     const Garment& old = entry.step->garment();
@@ -192,8 +262,8 @@ void btGnnSoftBodySolver::followScale(btSoftBody& body, Entry& entry) {
             (scaled ? scaledGarment(old, factor) : old).with_pins(std::move(pins)));
         build(body, entry);
     } catch (const std::exception& error) {
+        if (entry.stepping == Stepping::cloth) leaveToBullet(body, entry);
         entry.step.reset();
-        if (entry.stepping == Stepping::cloth) entry.stepping = Stepping::bullet;
         say(error.what());
     }
 }
@@ -229,6 +299,7 @@ void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
     for (int i = 0; i < m_softBodySet.size(); ++i) {
         btSoftBody& body = *m_softBodySet[i];
         if (steppingOf(&body) != Stepping::bullet || !body.isActive()) continue;
+        m_entries[&body].handover.beforeStep(body, static_cast<double>(solverdt));
         body.predictMotion(solverdt);
         mendBounds(body);
     }
@@ -248,10 +319,15 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
         m_status.bulletBodies += entry.stepping == Stepping::bullet;
         m_status.frozenBodies += entry.stepping == Stepping::frozen;
         if (entry.stepping == Stepping::cloth && body.getActivationState() == ISLAND_SLEEPING &&
-            entry.step->sleepsOn(m_obstacles))
+            entry.step->sleepsOn(m_obstacles)) {
             ++m_status.sleepingBodies;
+            m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
+        }
         if (!body.isActive()) continue;
-        if (entry.stepping == Stepping::bullet) body.solveConstraints();
+        if (entry.stepping == Stepping::bullet) {
+            body.solveConstraints();
+            entry.handover.afterStep(body, static_cast<double>(solverdt));
+        }
         if (entry.stepping == Stepping::cloth)
             stepCloth(body, entry, static_cast<double>(solverdt));
     }
@@ -268,7 +344,6 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
             "check what the program writes to m_x and m_v");
     if (result.steps > 0) {
         const cloth::StepReport& report = entry.step->lastReport();
-        m_status.maxPenetration = std::max(m_status.maxPenetration, report.max_penetration);
         m_status.cutSteps += report.substeps > 1;
         m_status.maxIgnoredDepth = std::max(m_status.maxIgnoredDepth, report.max_ignored_depth);
         m_status.nodesInIgnoredLimbs += report.vertices_in_ignored_limbs;
@@ -278,6 +353,8 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
         m_status.times.contact += report.times.contact;
         entry.failures = result.failed_steps > 0 ? entry.failures + result.failed_steps : 0;
     }
+    m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
+    for (const std::string& trouble : troublesOf(body, result)) say(trouble);
     if (entry.failures >= m_settings.maxFailedSteps)
         giveUp(body, entry,
                "its stepper " + entry.step->stepper().name() + " failed " +
@@ -287,8 +364,7 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
 void btGnnSoftBodySolver::giveUp(btSoftBody& body, Entry& entry, const std::string& why) {
     say(cloth::softBodyName(body) + ": " + why +
         "; Bullet steps it from now on. Remedy: call attach() to try again");
-    entry.step.reset();
-    entry.stepping = Stepping::bullet;
+    leaveToBullet(body, entry);
     entry.detached = true;
 }
 
@@ -306,8 +382,16 @@ void btGnnSoftBodySolver::processCollision(btSoftBody* body,
 }
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body, btSoftBody* otherBody) {
+    const bool isCloth = steppingOf(body) == Stepping::cloth;
     if (steppingOf(body) == Stepping::bullet && steppingOf(otherBody) == Stepping::bullet)
         body->defaultCollisionHandler(otherBody);
+    else if (askForContact(*body, *otherBody))
+        say((isCloth ? cloth::softBodyName(*body) : cloth::softBodyName(*otherBody)) +
+            ": it meets " +
+            (isCloth ? cloth::softBodyName(*otherBody) : cloth::softBodyName(*body)) +
+            ", and both ask for contact between soft bodies (VF_SS or CL_SS), but cloth passes "
+            "through soft bodies. Remedy: merge_garments() for layers of cloth, a rigid body or "
+            "setAnimatedObstacle() for what lies below, or detach() both");
 }
 
 const cloth::Stepper* btGnnSoftBodySolver::stepperOf(const btSoftBody* body) const {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bullet_ext/bulletHandover.h"
 #include "bullet_ext/bulletObstacles.h"
 #include "data/core/garment.h"
 #include "gnn/stepper.h"
@@ -23,12 +24,19 @@ using StepperFactory = std::function<std::unique_ptr<Stepper>(const Garment&)>;
 
 }  // namespace cloth
 
+/// What m_cfg.kDF times an object's friction means where cloth slides on the object.
+enum class btGnnFriction {
+    bullet,   ///< the larger of Coulomb's friction and Bullet's brake, see slidingFriction.h
+    coulomb,  ///< Coulomb's coefficient, and nothing else
+};
+
 struct btGnnSolverSettings {
-    cloth::Fabric fabric;           ///< of cloth whose garment is not given
-    bool useBodyMaterials = false;  ///< true: its stiffness is that of the body's m_materials, by
-                                    ///< the rule of materialFabric.h
-    bool useBodyDensity = false;    ///< true: the fabric's density is the body's mass per area;
+    /// Of cloth that is attached without a fabric or a garment of its own; empty: what the body
+    /// says, the materials of its links by the rule of materialFabric.h.
+    std::optional<cloth::Fabric> fabric;
+    bool useBodyDensity = false;  ///< true: `fabric` has the body's mass per area for its density;
                                   ///< false: the cloth moves as its fabric does, whatever it weighs
+    btGnnFriction friction = btGnnFriction::bullet;
     double obstacleReach = 0.1;  ///< how far around cloth obstacles are looked for (m), 0.02 to 1
     double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
@@ -50,8 +58,8 @@ struct btGnnSolverStatus {
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
     long cutSteps = 0;            ///< those that were taken in parts, see cloth::ClothStepper
-    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle after the last step (m);
-                                  ///< limbs that it ignores do not count
+    double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle, as the last world step
+                                  ///< shows both (m); limbs that it ignores do not count
     /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
     /// through each other there is no room for cloth, see cloth::LimbOverlap.
     double maxIgnoredDepth = 0.0;
@@ -70,8 +78,9 @@ struct btGnnSolverStatus {
 ///     world.addSoftBody(shirt);
 ///
 /// - Cloth is a soft body with faces and without tetrahedra, clusters, joints, pressure, volume
-///   conservation and pose matching. All other soft bodies, and cloth that cannot be a garment, are
-///   stepped by Bullet's own code, body by body, as by btDefaultSoftBodySolver.
+///   conservation and pose matching. Its surface has a border; a closed one, which Bullet's links
+///   hold up, is cloth if attach() says so. All other soft bodies, and cloth that cannot be a
+///   garment, are stepped by Bullet's own code, body by body, as by btDefaultSoftBodySolver.
 /// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
 ///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
 /// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
@@ -79,10 +88,12 @@ struct btGnnSolverStatus {
 ///   bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
-///   act as Bullet documents them; m_materials do if the settings say so, else the fabric decides.
+///   act as in Bullet. The cloth is as stiff as its m_materials say, by the rule of
+///   materialFabric.h, or has a fabric in SI units: attach() and btGnnSolverSettings::fabric.
 /// - Cloth that rests sleeps and costs nothing until something about it changes, see ClothSleep.
 /// - The rest shape is the shape of the first step. Later transform() and translate() move the
 ///   cloth and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
+///   Nodes that a cut adds get the rest positions of the places that they cut.
 ///
 /// Remove soft bodies from the world before deleting them, and keep the solver until then.
 class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
@@ -144,18 +155,23 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     struct Entry {
         Stepping stepping = Stepping::bullet;
         bool detached = false;  ///< the user chose Bullet
+        bool asked = false;     ///< the user chose cloth
         int worldId = 0;        ///< of the body in its world; 0: not seen there yet
         bool seen = false;      ///< was part of the world
         std::unique_ptr<cloth::SoftBodyStep> step;
         std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null
         std::optional<cloth::Fabric> fabric;          ///< the body's own
         cloth::StepperFactory factory;                ///< the body's own, else null
+        cloth::BulletHandover handover;
         size_t topology = 0;
-        double linkLength = 0.0;  ///< mean rest length when it was attached (m)
-        int failures = 0;         ///< in a row
+        std::vector<double> restLengths;  ///< of its links at the last step (m)
+        int failures = 0;                 ///< in a row
     };
 
     void build(btSoftBody& body, Entry& entry);
+    void leaveToBullet(btSoftBody& body, Entry& entry);
+    void followCut(btSoftBody& body, Entry& entry);
+    double scaleOf(const btSoftBody& body, Entry& entry) const;
     cloth::Garment garmentFor(const btSoftBody& body, const Entry& entry) const;
     void tryBuild(btSoftBody& body, Entry& entry);
     void refresh(btSoftBody& body, Entry& entry);

@@ -70,13 +70,19 @@ std::vector<double> sortingKey(const Obstacle& o) {
     return key;
 }
 
-void sortByGeometry(std::vector<Obstacle>& obstacles) {
+void sortByGeometry(std::vector<Obstacle>& obstacles,
+                    std::vector<const btCollisionObject*>& owners) {
     std::vector<std::pair<std::vector<double>, size_t>> order;
     for (size_t i = 0; i < obstacles.size(); ++i) order.emplace_back(sortingKey(obstacles[i]), i);
     std::sort(order.begin(), order.end());
     std::vector<Obstacle> sorted;
-    for (const auto& entry : order) sorted.push_back(std::move(obstacles[entry.second]));
+    std::vector<const btCollisionObject*> their;
+    for (const auto& entry : order) {
+        sorted.push_back(std::move(obstacles[entry.second]));
+        their.push_back(owners[entry.second]);
+    }
     obstacles = std::move(sorted);
+    owners = std::move(their);
 }
 
 }  // namespace
@@ -125,6 +131,7 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
 
 bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
     if (object.getInternalType() == btCollisionObject::CO_SOFT_BODY) return false;
+    if (!(body.m_cfg.collisions & btSoftBody::fCollision::RVSmask)) return false;
     if (!object.hasContactResponse() || !isFinite(object.getWorldTransform())) return false;
     const btBroadphaseProxy* a = body.getBroadphaseHandle();
     const btBroadphaseProxy* b = object.getBroadphaseHandle();
@@ -230,15 +237,22 @@ void BulletObstacles::watch(const btSoftBody& body, const Vec3& low, const Vec3&
 }
 
 std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& low,
-                                            const Vec3& high, const TimeSpan& span) {
+                                            const Vec3& high, const TimeSpan& span,
+                                            std::vector<const btCollisionObject*>* owners) {
     std::vector<Obstacle> obstacles;
+    std::vector<const btCollisionObject*> objects;
     const double softness = body.m_cfg.kDF;
-    for (const btCollisionObject* object : objectsIn(body, low, high))
+    for (const btCollisionObject* object : objectsIn(body, low, high)) {
         append(update(*object), softness * object->getFriction(), span, obstacles);
+        objects.resize(obstacles.size(), object);
+    }
     for (const auto& [object, animation] : m_animated)
-        if (collides(body, *object) && animation.near(low, high))
+        if (collides(body, *object) && animation.near(low, high)) {
             append(animation, softness * object->getFriction(), span, obstacles);
-    sortByGeometry(obstacles);
+            objects.resize(obstacles.size(), object);
+        }
+    sortByGeometry(obstacles, objects);
+    if (owners) *owners = std::move(objects);
     return obstacles;
 }
 
@@ -262,26 +276,100 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
 }
 
 std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const Vec3& low,
-                                                   const Vec3& high, double time) {
+                                                   const Vec3& high, const TimeSpan& span) {
     const auto dynamic = [](const btCollisionObject* object) {
         const btRigidBody* rigid = btRigidBody::upcast(object);
         return rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0;
     };
+    const auto moves = [&](const btCollisionObject* object) {
+        return dynamic(object) || object->isKinematicObject();
+    };
     const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
+    const bool closing = objects.size() > 1 && std::any_of(objects.begin(), objects.end(), moves);
     std::vector<NearSolid> solids;
-    if (body.m_anchors.size() == 0 && std::none_of(objects.begin(), objects.end(), dynamic))
+    if (!closing && body.m_anchors.size() == 0 &&
+        std::none_of(objects.begin(), objects.end(), dynamic))
         return solids;
     for (const btCollisionObject* object : objects) {
         Track& track = update(*object);
-        if (track.distances.empty())
-            for (const ShapePart& part : track.parts) track.distances.emplace_back(part);
         // The world owns the body and may push it; cloth only hands on what the world would do.
         btRigidBody* pushed =
             dynamic(object) ? const_cast<btRigidBody*>(btRigidBody::upcast(object)) : nullptr;
-        solids.push_back(
-            {pushed, interpolate(track.begin, track.end, time / m_h).inverse(), &track.distances});
+        const auto inverseAt = [&](double time) {
+            return interpolate(track.begin, track.end, time / m_h).inverse();
+        };
+        solids.push_back({object, pushed, inverseAt(span.begin + span.length),
+                          inverseAt(span.begin), &distancesOf(track)});
     }
     return solids;
+}
+
+const std::vector<PartDistance>& BulletObstacles::distancesOf(Track& track) const {
+    if (track.distances.empty())
+        for (const ShapePart& part : track.parts) track.distances.emplace_back(part);
+    return track.distances;
+}
+
+double BulletObstacles::deepest(const btSoftBody& body, const Points& x,
+                                const std::vector<char>& left_out) {
+    constexpr double kDeepest = 0.1;  // m
+    double depth = 0.0;
+    const Vec3 low = x.colwise().minCoeff(), high = x.colwise().maxCoeff();
+    for (const btCollisionObject* object : objectsIn(body, low, high)) {
+        Track& track = update(*object);
+        const Pose inverse = track.end.inverse();
+        for (const PartDistance& part : distancesOf(track))
+            for (Eigen::Index i = 0; i < x.rows(); ++i)
+                if (!left_out[static_cast<size_t>(i)])
+                    depth = std::max(
+                        depth, -part.at(inverse * x.row(i).transpose(), kDeepest).value_or(0.0));
+    }
+    return depth;
+}
+
+NearSolid NearSolid::before() const {
+    NearSolid solid = *this;
+    solid.inverse = inverse_before;
+    return solid;
+}
+
+Vec3 NearSolid::velocity(const Vec3& point, double length) const {
+    if (body)
+        return toVec3(body->getVelocityInLocalPoint(
+            toBullet(Vec3(point - toVec3(body->getCenterOfMassPosition())))));
+    return (point - motion().inverse() * point) / length;
+}
+
+void NearSolid::shift(const Vec3& before_shift, const Vec3& now) {
+    inverse = inverse * Eigen::Translation3d(-now);
+    inverse_before = inverse_before * Eigen::Translation3d(-before_shift);
+}
+
+std::vector<SlidingSolid> BulletObstacles::slidingNear(const btSoftBody& body, const Vec3& low,
+                                                       const Vec3& high, double time) {
+    std::vector<SlidingSolid> solids;
+    for (const btCollisionObject* object : objectsIn(body, low, high)) {
+        Track& track = update(*object);
+        SlidingSolid sliding;
+        sliding.near.object = object;
+        const btRigidBody* rigid = btRigidBody::upcast(object);
+        // The world owns the body and may push it; friction does what the world would do.
+        if (rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0)
+            sliding.near.body = const_cast<btRigidBody*>(rigid);
+        sliding.near.inverse = interpolate(track.begin, track.end, time / m_h).inverse();
+        sliding.near.parts = &distancesOf(track);
+        sliding.friction = static_cast<double>(object->getFriction());
+        sliding.motion = track.end * track.begin.inverse();
+        sliding.duration = m_h;
+        solids.push_back(sliding);
+    }
+    return solids;
+}
+
+Vec3 SlidingSolid::velocity(const Vec3& point) const {
+    if (!near.body) return (point - motion.inverse() * point) / duration;
+    const Vec3 arm = point - toVec3(near.body->getCenterOfMassPosition());
+    return toVec3(near.body->getVelocityInLocalPoint(toBullet(arm)));
 }
 
 std::optional<double> NearSolid::distance(const Vec3& point, double radius) const {

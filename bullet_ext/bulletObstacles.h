@@ -32,16 +32,39 @@ struct AnimatedMesh {
     std::shared_ptr<const std::vector<std::uint8_t>> limbs = {};  ///< see Obstacle; or null
 };
 
-/// A solid as it is at one moment.
+/// A solid as it is at the end of a span of time.
 struct NearSolid {
-    btRigidBody* body = nullptr;      ///< that cloth can push; null: nothing can
-    Pose inverse = Pose::Identity();  ///< from the world to the body, where asked for
+    const btCollisionObject* object = nullptr;
+    btRigidBody* body = nullptr;                       ///< that cloth can push; null: nothing can
+    Pose inverse = Pose::Identity();                   ///< from the world to the body
+    Pose inverse_before = Pose::Identity();            ///< the same at the start of the span
     const std::vector<PartDistance>* parts = nullptr;  ///< of the shape; valid in this world step
+
+    /// The solid at the start of the span.
+    NearSolid before() const;
+    /// Takes a point of the world along, from the start of the span to its end.
+    Pose motion() const { return inverse.inverse() * inverse_before; }
+    /// Velocity of the surface at a point of the world, at the end of a span of that length (s):
+    /// that of the body, or of the motion.
+    Vec3 velocity(const Vec3& point, double length) const;
+    /// Moves the solid (m): at the start, and at the end.
+    void shift(const Vec3& before, const Vec3& now);
 
     /// Signed distance (m) of a point of the world; none if it is farther than `radius`.
     std::optional<double> distance(const Vec3& point, double radius) const;
     /// Direction away from the solid at a point within `radius` of it (unit vector, or zero).
     Vec3 outward(const Vec3& point, double radius) const;
+};
+
+/// A solid that cloth slides on.
+struct SlidingSolid {
+    NearSolid near;
+    double friction = 0.0;           ///< Bullet's, of the object
+    Pose motion = Pose::Identity();  ///< takes it from where it was one world step ago to now
+    double duration = 1.0;           ///< of the world step (s)
+
+    /// Of its surface at a point of the world (m/s).
+    Vec3 velocity(const Vec3& point) const;
 };
 
 /// What sleeping cloth has to know of an object near it.
@@ -72,13 +95,24 @@ class BulletObstacles {
     /// Obstacles that may touch `body` within the box [low, high] during `span`: static, kinematic
     /// and dynamic objects that pass Bullet's collision filters. Their order depends on their
     /// geometry only, not on the order in which they were added.
+    /// @param owners  if not null: the object of each obstacle
     std::vector<Obstacle> near(const btSoftBody& body, const Vec3& low, const Vec3& high,
-                               const TimeSpan& span);
+                               const TimeSpan& span,
+                               std::vector<const btCollisionObject*>* owners = nullptr);
 
-    /// The objects among them that are not animated meshes, as they are at `time` (s, from the
-    /// start of the world step); none if no dynamic body is among them and `body` has no anchors.
+    /// The objects among them that are not animated meshes, during `span`; none where all of them
+    /// are static, or one alone is kinematic, and `body` has no anchors.
     std::vector<NearSolid> solidsNear(const btSoftBody& body, const Vec3& low, const Vec3& high,
-                                      double time);
+                                      const TimeSpan& span);
+
+    /// How deep the deepest of the points `x` (|V| x 3, m) is in an object that is not an animated
+    /// mesh, at the end of the world step (m). What is deeper in a mesh than 0.1 m is not seen.
+    /// @param left_out  points that do not count (|V|)
+    double deepest(const btSoftBody& body, const Points& x, const std::vector<char>& left_out);
+
+    /// The objects of solidsNear(), whatever they are, with what friction asks for.
+    std::vector<SlidingSolid> slidingNear(const btSoftBody& body, const Vec3& low, const Vec3& high,
+                                          double time);
 
     /// All objects that near() would look at, in a fixed order.
     std::vector<NearObject> objectsNear(const btSoftBody& body, const Vec3& low,
@@ -116,6 +150,7 @@ class BulletObstacles {
     std::vector<const btCollisionObject*> objectsIn(const btSoftBody& body, const Vec3& low,
                                                     const Vec3& high) const;
     Track& update(const btCollisionObject& object);
+    const std::vector<PartDistance>& distancesOf(Track& track) const;
     void refreshParts(Track& track, const btCollisionObject& object);
     void forgetUnseen();
     void append(const Track& track, double friction, const TimeSpan& span,

@@ -178,6 +178,13 @@ bool isCloth(const btSoftBody& body) {
            body.m_joints.size() == 0 && cfg.kPR == 0 && cfg.kVC == 0 && !pose;
 }
 
+bool isClosed(const btSoftBody& body) {
+    if (body.m_faces.size() == 0) return false;
+    const auto edges = facesAtEdges(faceNodes(body));
+    return std::all_of(edges.begin(), edges.end(),
+                       [](const auto& edge) { return edge.second.size() > 1; });
+}
+
 bool isHardAnchor(const btSoftBody::Anchor& anchor) {
     return anchor.m_influence >= btScalar(0.999);
 }
@@ -221,18 +228,26 @@ void checkCloth(const btSoftBody& body) {
 }
 
 Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_density) {
-    const std::string name = softBodyName(body);
     checkCloth(body);
-    TriMesh rest{restPositions(body), faceNodes(body)};
-    checkFacesDiffer(name, rest.faces);
-    orientFaces(name, rest.faces);
+    const Points rest = restPositions(body);
     if (use_body_density) {
-        fabric.density = bodyDensity(body, rest.vertices, rest.faces);
+        fabric.density = bodyDensity(body, rest, faceNodes(body));
         if (!(fabric.density > 0.0))
-            throw ArgumentError(name, "every node is pinned, so its density is unknown",
+            throw ArgumentError(softBodyName(body),
+                                "every node is pinned, so its density is unknown",
                                 "free at least one node, or use the fabric's density");
     }
-    return Garment(name, std::move(rest), fabric, pinnedNodes(body));
+    return garmentOfSoftBody(body, fabric, rest, /*rest_angles=*/false);
+}
+
+Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, const Points& rest,
+                          bool rest_angles) {
+    const std::string name = softBodyName(body);
+    checkCloth(body);
+    TriMesh mesh{rest, faceNodes(body)};
+    checkFacesDiffer(name, mesh.faces);
+    orientFaces(name, mesh.faces);
+    return Garment(name, std::move(mesh), fabric, pinnedNodes(body), rest_angles);
 }
 
 double massRatio(const btSoftBody& body, const Garment& garment) {
@@ -275,15 +290,39 @@ size_t topologySignature(const btSoftBody& body) {
     return hash;
 }
 
-double meanLinkLength(const btSoftBody& body) {
-    double sum = 0.0;
-    int count = 0;
+std::vector<double> restLengths(const btSoftBody& body) {
+    if (body.m_bUpdateRtCst) return lengthsAt(body, nodePositions(body));
+    std::vector<double> lengths;
     for (int l = 0; l < body.m_links.size(); ++l)
-        if (!body.m_links[l].m_bbending) {
-            sum += static_cast<double>(body.m_links[l].m_rl);
-            ++count;
-        }
-    return count ? sum / count : 0.0;
+        if (!body.m_links[l].m_bbending)
+            lengths.push_back(static_cast<double>(body.m_links[l].m_rl));
+    return lengths;
+}
+
+std::vector<double> lengthsAt(const btSoftBody& body, const Points& x) {
+    std::vector<double> lengths;
+    for (int l = 0; l < body.m_links.size(); ++l) {
+        const btSoftBody::Link& link = body.m_links[l];
+        if (!link.m_bbending)
+            lengths.push_back(
+                (x.row(nodeIndex(body, link.m_n[0])) - x.row(nodeIndex(body, link.m_n[1]))).norm());
+    }
+    return lengths;
+}
+
+std::optional<double> commonFactor(const std::vector<double>& from, const std::vector<double>& to) {
+    constexpr double kSame = 1e-3;
+    if (from.empty() || from.size() != to.size()) return std::nullopt;
+    double sum_from = 0.0, sum_to = 0.0;
+    for (size_t i = 0; i < from.size(); ++i) {
+        sum_from += from[i];
+        sum_to += to[i];
+    }
+    const double factor = sum_to / sum_from;
+    if (!(factor >= 0.0) || !std::isfinite(factor)) return std::nullopt;
+    for (size_t i = 0; i < from.size(); ++i)
+        if (!(std::abs(to[i] - factor * from[i]) <= kSame * factor * from[i])) return std::nullopt;
+    return factor;
 }
 
 }  // namespace cloth

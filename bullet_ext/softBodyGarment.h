@@ -2,6 +2,7 @@
 
 #include <BulletSoftBody/btSoftBody.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ std::string softBodyName(const btSoftBody& body);
 /// Cloth has faces and nothing that needs Bullet's own code: no tetrahedra, clusters, pressure,
 /// volume conservation or pose matching.
 bool isCloth(const btSoftBody& body);
+
+/// Whether the faces have no border edge, as a ball's or a torus'.
+bool isClosed(const btSoftBody& body);
 
 /// Anchors of influence 1 are pins that follow their body; weaker ones pull, see softAnchors.h.
 bool isHardAnchor(const btSoftBody::Anchor& anchor);
@@ -39,6 +43,9 @@ Faces faceNodes(const btSoftBody& body);
 ///
 /// @throws ArgumentError naming the body, the node or edge, and the remedy
 Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, bool use_body_density);
+/// The same of a given rest shape (|V| x 3, m).
+Garment garmentOfSoftBody(const btSoftBody& body, Fabric fabric, const Points& rest,
+                          bool rest_angles);
 
 /// The body's mass over the garment's, both of the nodes that are free or anchored: times
 /// garment.masses() these are the masses that the body's cloth moves with.
@@ -53,8 +60,22 @@ void checkGarmentFits(const btSoftBody& body, const Garment& garment);
 /// A number that changes when nodes or faces are added, removed or renumbered.
 size_t topologySignature(const btSoftBody& body);
 
-/// Mean rest length of the links that are not bending links (m); 0 without links.
-/// setRestLengthScale() and scale() change it.
-double meanLinkLength(const btSoftBody& body);
+/// Rest lengths of the links that are not bending links (m), as Bullet will have them in its next
+/// step.
+std::vector<double> restLengths(const btSoftBody& body);
+/// Lengths of the same links where the nodes are at x (|V| x 3, m).
+std::vector<double> lengthsAt(const btSoftBody& body, const Points& x);
+
+/// The one factor that takes all numbers of `from` to those of `to`, within a thousandth of it;
+/// none if there is none, or their number is not the same.
+std::optional<double> commonFactor(const std::vector<double>& from, const std::vector<double>& to);
+
+/// The garment after nodes were added to its body, as by a cut: nodes that were there keep their
+/// rest positions, new ones get those of the places of the old cloth where they are now. None if
+/// nodes were removed or moved at the same time.
+/// @param shown  |V before| x 3 (m): where the nodes were
+/// @throws ArgumentError if the new faces are none of a garment
+std::optional<Garment> garmentAfterCut(const btSoftBody& body, const Garment& before,
+                                       const Points& shown);
 
 }  // namespace cloth

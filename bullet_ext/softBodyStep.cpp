@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ext/slidingFriction.h"
 #include "bullet_ext/softAnchors.h"
 #include "bullet_ext/softBodyGarment.h"
 
@@ -24,6 +25,13 @@ btVector3 restored(const float* written) {
     return {written[0], written[1], written[2]};
 }
 
+void add(const StageTimes& times, StageTimes& sum) {
+    sum.proximity += times.proximity;
+    sum.features += times.features;
+    sum.solve += times.solve;
+    sum.contact += times.contact;
+}
+
 struct Box {
     Vec3 low, high;
 };
@@ -39,12 +47,14 @@ Box boxAhead(const ClothState& state, double time, double reach) {
 }  // namespace
 
 SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
-                           std::unique_ptr<Stepper> stepper, double sleep_motion)
+                           std::unique_ptr<Stepper> stepper, double sleep_motion,
+                           bool sliding_friction)
     : m_body(body),
       m_garment(std::move(garment)),
       m_stepper(std::move(stepper)),
       m_reactions(body),
-      m_sleep(body, sleep_motion) {
+      m_sleep(body, sleep_motion),
+      m_sliding_friction(sliding_friction) {
     const int count = body.m_nodes.size();
     m_shown.x = nodePositions(body);
     m_shown.v.resize(count, 3);
@@ -77,11 +87,16 @@ SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, do
     while (!m_cloth_step.valid || m_cloth_step.begin + m_cloth_step.length < end) {
         startClothStep(result.steps == 0);
         result.failed_steps += runClothStep(obstacles, reach) ? 0 : 1;
+        result.caught_nodes = std::max(result.caught_nodes, m_pinched.caught());
+        result.calmed |= m_reactions.calmed();
         ++result.steps;
     }
+    followAnchors();
     showClothStep();
     writeNodes();
-    m_reactions.apply(m_h, obstacles.solidsNear(m_body, box.low, box.high, h));
+    measureDepth(obstacles);
+    result.stretched_anchor = stretchedAnchor();
+    m_reactions.apply(m_h, obstacles.solidsNear(m_body, box.low, box.high, {h, 0.0}));
     m_cloth_step.begin -= m_h;
     m_sleep.afterStep(m_shown.x, h, obstacles, box.low, box.high);
     return result;
@@ -144,12 +159,22 @@ void SoftBodyStep::takeNodes() {
 }
 
 /// Wind, by Bullet's aerodynamic models; as in Bullet they see the velocity with gravity's part.
+/// It is the velocity that the next cloth step starts with, with all that the world steps before
+/// this one gave it: drag takes no more than the velocity that it sees, but the drags of many short
+/// world steps would together turn it round if each of them saw the same.
 void SoftBodyStep::takeWind() {
     if (!(m_body.m_cfg.kLF > 0) && !(m_body.m_cfg.kDG > 0)) return;
+    const Points& start = m_cloth_step.valid ? m_cloth_step.to.v : m_shown.v;
+    std::vector<btVector3> velocities;
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btSoftBody::Node& node = m_body.m_nodes[i];
+        velocities.push_back(node.m_v);
+        node.m_v = toBullet(Vec3(start.row(i) + static_cast<double>(node.m_im) * m_impulse.row(i)));
+    }
     m_body.addVelocity(m_body.m_worldInfo->m_gravity * m_body.m_sst.sdt);
     m_body.applyForces();
     for (int i = 0; i < m_body.m_nodes.size(); ++i)
-        m_body.m_nodes[i].m_v = toBullet(Vec3(m_shown.v.row(i)));
+        m_body.m_nodes[i].m_v = velocities[static_cast<size_t>(i)];
 }
 
 void SoftBodyStep::takeForces() {
@@ -171,6 +196,12 @@ void SoftBodyStep::takePins() {
         m_pins_before.row(p) = m_shown.x.row(pins[static_cast<size_t>(p)]);
         m_pins_after.row(p) = toVec3(node.m_x) + m_h * toVec3(node.m_v);
     }
+    followAnchors();
+}
+
+/// Puts anchored nodes where their bodies are.
+void SoftBodyStep::followAnchors() {
+    const std::vector<int>& pins = m_garment->pins();
     for (int a = 0; a < m_body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
@@ -193,9 +224,12 @@ Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles, const Vec
     Boundary boundary;
     boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
     boundary.pin_targets = pinsAt(m_cloth_step.begin + m_cloth_step.length);
-    boundary.obstacles = obstacles.near(
-        m_body, low, high, {m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
+    const TimeSpan span = {m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale};
+    std::vector<const btCollisionObject*> owners;
+    boundary.obstacles = obstacles.near(m_body, low, high, span, &owners);
     boundary.trees = obstacles.trees();
+    m_solids = obstacles.solidsNear(m_body, low, high, span);
+    m_pinched.makeRoom(*m_garment, m_cloth_step.from, m_solids, owners, boundary);
     if (!m_impulse.isZero(0.0)) {
         boundary.accelerations = m_impulse / m_cloth_step.length;
         for (int i = 0; i < m_body.m_nodes.size(); ++i)
@@ -213,10 +247,10 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
     m_pins_drift = goes_on && first_of_step ? Points(m_pins_before - m_pins_at_cloth_step)
                                             : Points::Zero(m_pins_before.rows(), 3);
     m_pins_at_cloth_step = m_pins_after;
+    m_continues = goes_on;
     m_cloth_step.from = goes_on ? m_cloth_step.to : m_shown;
     m_cloth_step.begin = goes_on ? m_cloth_step.begin + m_cloth_step.length : 0.0;
-    const double fixed = m_stepper->fixed_dt();
-    m_cloth_step.length = fixed > 0.0 ? fixed : m_h - m_cloth_step.begin;
+    m_cloth_step.length = looksAhead() ? m_stepper->fixed_dt() : m_h - m_cloth_step.begin;
     if (!m_prepared) m_stepper->prepare(m_cloth_step.length);
     m_prepared = true;
     m_cloth_step.valid = true;
@@ -226,26 +260,60 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
         m_cloth_step.from.x.row(pins[p]) = pins_now.row(static_cast<Eigen::Index>(p));
 }
 
+/// A body that hangs on the cloth, and is pulled by it, cannot be foreseen.
+bool SoftBodyStep::looksAhead() const {
+    if (!(m_stepper->fixed_dt() > 0.0)) return false;
+    if (!m_stepper->accepts_any_dt()) return true;
+    for (int a = 0; a < m_body.m_anchors.size(); ++a)
+        if (isHardAnchor(m_body.m_anchors[a]) && isDynamic(*m_body.m_anchors[a].m_body))
+            return false;
+    return true;
+}
+
 bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
     const ClothState& from = m_cloth_step.from;
     const Box box = boxAhead(from, m_cloth_step.length, reach);
-    const Boundary boundary = boundaryOfClothStep(obstacles, box.low, box.high);
-    ClothState to = from;
-    m_report = m_stepper->step(boundary, m_cloth_step.length, to);
-    m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
+    Boundary boundary = boundaryOfClothStep(obstacles, box.low, box.high);
+    const bool now =
+        std::abs(m_cloth_step.begin) + std::abs(m_cloth_step.length - m_h) < 1e-3 * m_h;
+    const bool hang = now && m_anchored.begin(m_body, *m_garment, m_cloth_step.length);
+    ClothState to;
+    StageTimes times;
+    do {
+        to = from;
+        m_report = m_stepper->step(boundary, m_cloth_step.length, to);
+        m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
+        add(m_report.times, times);
+    } while (hang && m_anchored.tryAgain(*m_stepper, from, boundary, to, m_report));
+    m_report.times = times;
+    if (hang && m_report.finite) m_anchored.place(to);
     if (m_report.finite)
         m_cloth_step.to = std::move(to);
     else
         m_cloth_step.to = from;
     m_cloth_step.to.time = from.time + m_cloth_step.length;
+    // Impulses of friction are handed on by themselves; where there is no body, it is in the
+    // balance.
+    const bool alone = m_solids.empty();
+    if (alone) slowDown(obstacles, box.low, box.high);
     if (m_report.finite)
-        m_reactions.collect(
-            {*m_garment, *m_stepper, boundary, from, m_cloth_step.to, m_cloth_step.length,
-             obstacles.solidsNear(m_body, box.low, box.high,
-                                  (m_cloth_step.begin + m_cloth_step.length) / m_time_scale)});
+        m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_cloth_step.to,
+                             m_cloth_step.length, m_solids, m_pinched, m_continues,
+                             hang ? &m_anchored : nullptr});
+    if (!alone) slowDown(obstacles, box.low, box.high);
+    return m_report.finite;
+}
+
+/// Bullet's friction and damping, which it gives per world step.
+void SoftBodyStep::slowDown(BulletObstacles& obstacles, const Vec3& low, const Vec3& high) {
+    if (m_sliding_friction && m_report.finite) {
+        const double end = (m_cloth_step.begin + m_cloth_step.length) / m_time_scale;
+        applySlidingFriction(m_body,
+                             {*m_garment, *m_stepper, obstacles.slidingNear(m_body, low, high, end),
+                              m_cloth_step.length, m_h, m_cloth_step.from, m_cloth_step.to});
+    }
     const double damping = std::min(static_cast<double>(m_body.m_cfg.kDP), 1.0);
     if (damping > 0.0) m_cloth_step.to.v *= std::pow(1.0 - damping, m_cloth_step.length / m_h);
-    return m_report.finite;
 }
 
 void SoftBodyStep::showClothStep() {
@@ -260,6 +328,32 @@ void SoftBodyStep::showClothStep() {
     const std::vector<int>& pins = m_garment->pins();
     for (size_t p = 0; p < pins.size(); ++p)
         m_shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
+}
+
+/// Where the cloth step ends with the world step, and the cloth saw all as it is shown, its stepper
+/// has measured already: edges and faces, too.
+void SoftBodyStep::measureDepth(BulletObstacles& obstacles) {
+    const double ahead = m_cloth_step.begin + m_cloth_step.length - m_h;
+    m_depth = m_report.max_penetration;
+    if (std::abs(ahead) > 1e-3 * m_cloth_step.length || m_pinched.movesSolids() ||
+        m_reactions.heldBack())
+        m_depth = obstacles.deepest(m_body, m_shown.x, m_garment->is_pinned());
+}
+
+/// An edge of twice its length is torn cloth.
+int SoftBodyStep::stretchedAnchor() const {
+    constexpr double kTorn = 2.0;
+    if (m_body.m_anchors.size() == 0) return -1;
+    for (const auto& [a, b] : m_garment->edges()) {
+        const double rest =
+            (m_garment->rest().vertices.row(a) - m_garment->rest().vertices.row(b)).norm();
+        if ((m_shown.x.row(a) - m_shown.x.row(b)).norm() <= kTorn * rest) continue;
+        for (int k = 0; k < m_body.m_anchors.size(); ++k) {
+            const int node = static_cast<int>(m_body.m_anchors[k].m_node - &m_body.m_nodes[0]);
+            if (isHardAnchor(m_body.m_anchors[k]) && (node == a || node == b)) return node;
+        }
+    }
+    return -1;
 }
 
 void SoftBodyStep::writeNodes() {

@@ -4,8 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "bullet_ext/anchoredBodies.h"
 #include "bullet_ext/bulletObstacles.h"
 #include "bullet_ext/clothSleep.h"
+#include "bullet_ext/pinchedCloth.h"
 #include "bullet_ext/twoWayCoupling.h"
 #include "gnn/stepper.h"
 
@@ -20,31 +22,40 @@ namespace cloth {
 /// passes the end of the last one, looks ahead with the velocities of obstacles and pins, and the
 /// nodes show the straight line between the cloth step's two ends. So cloth and obstacles show the
 /// same time; what an obstacle's acceleration changes within a cloth step is seen at the next one.
-/// Steppers that accept any time step use the world's, with no prediction at all.
+/// Steppers that are made for any time step use the world's, with no prediction at all; so do
+/// steppers that accept any, where dynamic bodies are anchored to the cloth.
 ///
 /// Whatever the user does to nodes between steps counts: moved or pushed free nodes start a new
 /// cloth step from what the nodes say, pinned nodes are followed, node forces and wind act as
 /// impulses. Dynamic rigid bodies get what they gave to the cloth, see TwoWayCoupling.
 class SoftBodyStep {
  public:
-    /// @param sleep_motion  cloth that moves less rests (m)
+    /// @param sleep_motion     cloth that moves less rests (m)
+    /// @param sliding_friction  besides Coulomb's, see slidingFriction.h
     SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
-                 std::unique_ptr<Stepper> stepper, double sleep_motion);
+                 std::unique_ptr<Stepper> stepper, double sleep_motion, bool sliding_friction);
 
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
+    const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
     const StepReport& lastReport() const { return m_report; }
     /// Impulse that dynamic rigid bodies got from the cloth in the last world step (N s).
     const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }
 
     struct Result {
-        int steps = 0;           ///< steps that the stepper made, 0 within a cloth step
-        int failed_steps = 0;    ///< steps that it could not make: the cloth holds its shape
-        int restored_nodes = 0;  ///< nodes that were not finite and were put back
+        int steps = 0;              ///< steps that the stepper made, 0 within a cloth step
+        int failed_steps = 0;       ///< steps that it could not make: the cloth holds its shape
+        int restored_nodes = 0;     ///< nodes that were not finite and were put back
+        int caught_nodes = 0;       ///< nodes that pass through a solid, for want of room
+        bool calmed = false;        ///< cloth and bodies would have made much energy
+        int stretched_anchor = -1;  ///< node that an anchor holds farther than the cloth reaches
     };
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
     /// the world step and writes the nodes. Obstacles are looked for within `reach` (m).
     Result step(double h, BulletObstacles& obstacles, double reach);
+    /// Deepest node that is not pinned in an obstacle (m), as the last world step shows both. In
+    /// animated meshes only what the last cloth step ended with is known.
+    double shownDepth() const { return m_depth; }
     /// Whether cloth that Bullet has put to sleep may sleep on; if not, it is awake now.
     bool sleepsOn(const BulletObstacles& obstacles);
 
@@ -62,20 +73,31 @@ class SoftBodyStep {
     void takeWind();
     void takeForces();
     void takePins();
+    void followAnchors();
     Points pinsAt(double time) const;
     Boundary boundaryOfClothStep(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
     void startClothStep(bool first_of_step);
+    bool looksAhead() const;
     bool runClothStep(BulletObstacles& obstacles, double reach);
+    void slowDown(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
     void showClothStep();
     void writeNodes();
+    void measureDepth(BulletObstacles& obstacles);
+    int stretchedAnchor() const;
 
     btSoftBody& m_body;
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
     StepReport m_report;
     TwoWayCoupling m_reactions;
+    PinchedCloth m_pinched;
+    AnchoredBodies m_anchored;
+    std::vector<NearSolid> m_solids;  ///< of the present cloth step, as the cloth sees them
+    bool m_continues = false;         ///< the present cloth step starts where the last one ended
     ClothSleep m_sleep;
+    bool m_sliding_friction;
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
+    double m_depth = 0.0;       ///< shownDepth()
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
     bool m_prepared = false;    ///< the stepper knows how long its steps are
     StepSpan m_cloth_step;

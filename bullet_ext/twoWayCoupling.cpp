@@ -17,26 +17,8 @@ namespace {
 constexpr double kTouch = 5e-3;  // m
 // Cloth between two solids is this near to both, at least where it is deepest.
 constexpr double kPinch = 2e-2;  // m
-
-bool isDynamic(const btRigidBody& body) {
-    return body.getInvMass() > 0 && !body.isStaticOrKinematicObject();
-}
-
-Vec3 centreOf(const btRigidBody& body) {
-    return toVec3(body.getCenterOfMassPosition());
-}
-
-/// Bodies that cannot turn count as ones that hardly can.
-Eigen::Matrix<double, 6, 6> massMatrix(const btRigidBody& body) {
-    constexpr double kLeast = 1e-9;
-    Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
-    const double inverse = std::max(static_cast<double>(body.getInvMass()), kLeast);
-    matrix.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity() / inverse;
-    const Vec3 moments = toVec3(body.getInvInertiaDiagLocal()).cwiseMax(kLeast).cwiseInverse();
-    const Eigen::Matrix3d turn = toMatrix(body.getCenterOfMassTransform().getBasis());
-    matrix.bottomRightCorner<3, 3>() = turn * moments.asDiagonal() * turn.transpose();
-    return matrix;
-}
+// Taut cloth accelerates bodies by no more.
+constexpr double kTaut = 100.0;  // m/s^2
 
 /// Cloth spins no body faster than this per cloth step, whatever the lever: pins are extrapolated
 /// over a cloth step, and farther than that the extrapolation amplifies the spin.
@@ -47,21 +29,10 @@ Vec3 limitedTurn(const Vec3& turning, const Vec3& change, double length) {
     return speed > limit ? Vec3((limit / speed) * (turning + change) - turning) : change;
 }
 
-/// Whether all that holds the cloth can be moved by it.
-bool floatsFreely(const btSoftBody& body, const ClothStep& step) {
-    for (int pin : step.garment.pins())
-        if (!(body.m_nodes[pin].m_im > 0)) return false;
-    for (int a = 0; a < body.m_anchors.size(); ++a)
-        if (!isDynamic(*body.m_anchors[a].m_body)) return false;
-    return std::all_of(step.near.begin(), step.near.end(),
-                       [](const NearSolid& solid) { return solid.body != nullptr; });
-}
-
-/// Whether the solids near the cloth are all that its stepper saw.
-bool allSolidsKnown(const ClothStep& step) {
-    size_t parts = 0;
-    for (const NearSolid& solid : step.near) parts += solid.parts->size();
-    return parts == step.boundary.obstacles.size();
+/// Velocity that a body got by moving with the cloth.
+Vector6 changeByMoving(const ClothStep& step, const btRigidBody& body) {
+    if (!step.anchored) return Vector6::Zero();
+    return step.anchored->changeOf(body);
 }
 
 }  // namespace
@@ -69,14 +40,30 @@ bool allSolidsKnown(const ClothStep& step) {
 void TwoWayCoupling::collect(const ClothStep& step) {
     forgetAbsent(step.near);
     m_mass_ratio = massRatio(m_body, step.garment);
+    m_masses = m_mass_ratio * step.garment.masses();
+    for (int i = 0; i < m_body.m_nodes.size(); ++i)
+        if (!(m_body.m_nodes[i].m_im > 0)) m_masses[i] = 0.0;
     for (auto& entry : m_accounts) {
         entry.second.taken.setZero();
         entry.second.nodes.clear();
         entry.second.meeting = 0.0;
         entry.second.anchored = false;
+        entry.second.lift = 0.0;
         entry.second.sides = {};
     }
+    m_calmed = m_held_back = false;
+    if (step.near.empty() && m_body.m_anchors.size() == 0) {
+        m_accounts.clear();
+        balanceAlone(step);
+        return;
+    }
+    m_internal_known = step.stepper.internal_forces(step.to.x, m_internal);
+    if (m_internal_known) m_internal *= m_mass_ratio;
     findHolders(step);
+    findFreeVelocities(step);
+    moveAnchored(step);
+    calmContacts(step, m_touches, m_free);
+    capSpeeds(step, m_touches, m_free);
     const bool held = std::any_of(m_holder.begin(), m_holder.end(),
                                   [](const btRigidBody* body) { return body != nullptr; });
     if (held) {
@@ -90,51 +77,97 @@ void TwoWayCoupling::collect(const ClothStep& step) {
         const bool done = it->second.nodes.empty() && it->second.planned.norm() < 1e-12;
         it = done ? m_accounts.erase(it) : std::next(it);
     }
+    balanceEnergy(step);
 }
 
-/// kg; 0 for nodes that nothing can move
-double TwoWayCoupling::massOf(const ClothStep& step, int node) const {
-    return m_body.m_nodes[node].m_im > 0 ? m_mass_ratio * step.garment.masses()[node] : 0.0;
+/// Nothing around the cloth can be pushed: what its stepper made from nothing is still taken away.
+void TwoWayCoupling::balanceAlone(const ClothStep& step) {
+    const auto count = static_cast<size_t>(step.to.x.rows());
+    m_holder.assign(count, nullptr);
+    m_held.assign(count, 0);
+    m_touches.solid.assign(count, -1);
+    m_free = step.from.v;
+    m_internal_known = false;
+    bool pulled = false;
+    for (const int pin : step.garment.pins()) {
+        m_held[static_cast<size_t>(pin)] = 1;
+        pulled = pulled || step.to.x.row(pin) != step.from.x.row(pin);
+    }
+    if (pulled) m_internal_known = step.stepper.internal_forces(step.to.x, m_internal);
+    if (m_internal_known) m_internal *= m_mass_ratio;
+    balanceEnergy(step);
 }
 
-/// The dynamic body that each node is anchored to or touches at the end of the cloth step.
+/// What each node touches at the end of the cloth step, and the dynamic body that holds it.
 void TwoWayCoupling::findHolders(const ClothStep& step) {
     const size_t count = static_cast<size_t>(step.to.x.rows());
     m_holder.assign(count, nullptr);
     m_held.assign(count, 0);
-    m_touch.resize(step.to.x.rows(), 3);
+    m_touches.solid.assign(count, -1);
+    m_touches.place.resize(step.to.x.rows(), 3);
     m_distance.assign(count, std::numeric_limits<double>::infinity());
     const Points& x = step.to.x;
-    const auto touch = [&](const NearSolid& obstacle, const Vec3& point,
-                           std::initializer_list<int> nodes) {
-        const std::optional<double> distance = obstacle.distance(point, kTouch);
+    const auto touch = [&](size_t s, const Vec3& point, std::initializer_list<int> nodes) {
+        for (int i : nodes)
+            if (step.pinched.ignores(i, s)) return;
+        const std::optional<double> distance = step.near[s].distance(point, kTouch);
         if (!distance) return;
         for (int i : nodes)
             if (*distance < m_distance[static_cast<size_t>(i)]) {
                 m_distance[static_cast<size_t>(i)] = *distance;
-                m_holder[static_cast<size_t>(i)] = obstacle.body;
+                m_holder[static_cast<size_t>(i)] = step.near[s].body;
                 m_held[static_cast<size_t>(i)] = 1;
-                m_touch.row(i) = point;
+                m_touches.solid[static_cast<size_t>(i)] = static_cast<int>(s);
+                m_touches.place.row(i) = point;
             }
     };
-    for (const NearSolid& obstacle : step.near) {
-        for (int i = 0; i < static_cast<int>(count); ++i) touch(obstacle, x.row(i), {i});
+    for (size_t s = 0; s < step.near.size(); ++s) {
+        for (int i = 0; i < static_cast<int>(count); ++i) touch(s, x.row(i), {i});
         for (const auto& [a, b] : step.garment.edges())
-            touch(obstacle, 0.5 * (x.row(a) + x.row(b)), {a, b});
+            touch(s, 0.5 * (x.row(a) + x.row(b)), {a, b});
         const Faces& faces = step.garment.rest().faces;
         for (Eigen::Index f = 0; f < faces.rows(); ++f)
-            touch(obstacle, (x.row(faces(f, 0)) + x.row(faces(f, 1)) + x.row(faces(f, 2))) / 3.0,
+            touch(s, (x.row(faces(f, 0)) + x.row(faces(f, 1)) + x.row(faces(f, 2))) / 3.0,
                   {faces(f, 0), faces(f, 1), faces(f, 2)});
     }
     releasePinching(step);
     for (int pin : step.garment.pins()) {
         m_holder[static_cast<size_t>(pin)] = nullptr;
         m_held[static_cast<size_t>(pin)] = 1;
+        m_touches.solid[static_cast<size_t>(pin)] = -1;
     }
+    holdByAnchors();
+}
+
+void TwoWayCoupling::holdByAnchors() {
     for (int a = 0; a < m_body.m_anchors.size(); ++a) {
         const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
         if (isHardAnchor(anchor) && anchor.m_node->m_im > 0 && isDynamic(*anchor.m_body))
             m_holder[static_cast<size_t>(anchor.m_node - &m_body.m_nodes[0])] = anchor.m_body;
+    }
+}
+
+/// Anchored nodes move as their body does: their path is that of a chord, or a jump.
+void TwoWayCoupling::moveAnchored(const ClothStep& step) {
+    for (const int pin : step.garment.pins()) {
+        const btRigidBody* body = m_holder[static_cast<size_t>(pin)];
+        if (!body) continue;
+        const Vector6 moved = changeByMoving(step, *body);
+        const Vec3 arm = Vec3(step.to.x.row(pin)) - centreOf(*body);
+        const Vec3 velocity =
+            velocityOf(*body, step.to.x.row(pin)) + moved.head<3>() + moved.tail<3>().cross(arm);
+        if (fitsFloats(velocity)) step.to.v.row(pin) = velocity;
+    }
+}
+
+/// By gravity, node forces and the fabric's own.
+void TwoWayCoupling::findFreeVelocities(const ClothStep& step) {
+    m_free = step.from.v;
+    m_free.rowwise() += step.length * step.boundary.gravity.transpose();
+    if (step.boundary.accelerations.size()) m_free += step.length * step.boundary.accelerations;
+    for (int i = 0; m_internal_known && i < m_body.m_nodes.size(); ++i) {
+        const double mass = m_masses[i];
+        if (mass > 0.0) m_free.row(i) += step.length / mass * m_internal.row(i);
     }
 }
 
@@ -152,14 +185,14 @@ void TwoWayCoupling::chargeSide(const ClothStep& step, int node, const Vec3& imp
     const btRigidBody* holder = m_holder[static_cast<size_t>(node)];
     Vec3 normal = Vec3::Zero();
     for (const NearSolid& solid : step.near)
-        if (solid.body == holder) normal = solid.outward(m_touch.row(node), kPinch);
+        if (solid.body == holder) normal = solid.outward(m_touches.place.row(node), kPinch);
     const Vec3 local = toMatrix(holder->getWorldTransform().getBasis()).transpose() * normal;
     Eigen::Index axis;
     local.cwiseAbs().maxCoeff(&axis);
     Side& side = account.sides[static_cast<size_t>(2 * axis + (local[axis] < 0.0))];
     side.impulse += impulse;
     side.normal += normal;
-    side.arm += Vec3(m_touch.row(node)) - centreOf(*holder);
+    side.arm += Vec3(m_touches.place.row(node)) - centreOf(*holder);
     ++side.count;
 }
 
@@ -173,11 +206,11 @@ void TwoWayCoupling::closeSides(const btRigidBody& body, bool all, Account& acco
     }
 }
 
-/// Whether the node lies between its holder and another solid.
+/// Whether the node lies between its holder and a solid that bears it.
 bool TwoWayCoupling::isPinched(const ClothStep& step, int node, const NearSolid& holder) const {
-    const Vec3 place = m_touch.row(node);
+    const Vec3 place = m_touches.place.row(node);
     for (const NearSolid& solid : step.near)
-        if (solid.body != holder.body && solid.distance(place, kPinch) &&
+        if (!solid.body && solid.distance(place, kPinch) &&
             solid.outward(place, kPinch).dot(holder.outward(place, kPinch)) < -0.1)
             return true;
     return false;
@@ -229,11 +262,9 @@ void TwoWayCoupling::findOwners(const ClothStep& step) {
 void TwoWayCoupling::findImpulses(const ClothStep& step) {
     const double h = step.length;
     m_impulses.setZero(step.to.x.rows(), 3);
-    m_internal_known = step.stepper.internal_forces(step.to.x, m_internal);
-    if (m_internal_known) m_internal *= m_mass_ratio;
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         const int owner = m_owner[static_cast<size_t>(i)];
-        const double mass = massOf(step, i);
+        const double mass = m_masses[i];
         if (owner < 0 || mass == 0.0) continue;
         Vec3 velocity = step.to.v.row(i) - step.from.v.row(i);
         velocity -= h * step.boundary.gravity;
@@ -298,31 +329,94 @@ std::vector<TwoWayCoupling::Follower> TwoWayCoupling::followersOf(const ClothSte
 }
 
 /// The common motion of the class comment.
-void TwoWayCoupling::settle(const ClothStep& step, const btRigidBody& body, Account& account) {
+void TwoWayCoupling::settle(const ClothStep& step, btRigidBody& body, Account& account) {
     const Matrix6 mass = massMatrix(body);
     Matrix6 both = mass;
     const std::vector<Follower> followers = followersOf(step, body, account);
     for (const Follower& follower : followers) {
         Eigen::Matrix<double, 3, 6> motion;
         motion << Eigen::Matrix3d::Identity(), -crossMatrix(follower.arm);
-        both += follower.weight * massOf(step, follower.node) * (motion.transpose() * motion);
+        both += follower.weight * m_masses[follower.node] * (motion.transpose() * motion);
     }
+    // What has moved with the cloth has most of its change already.
+    const Vector6 moved = changeByMoving(step, body);
+    if (step.anchored) account.lift = step.anchored->liftOf(body);
     // A cloth step that was cut short has left something to hand over.
-    Vector6 change = both.ldlt().solve(account.taken + account.planned);
+    Vector6 change = both.ldlt().solve(account.taken + account.planned - mass * moved);
     if (!change.allFinite()) return;
-    const Vec3 turning = toVec3(body.getAngularVelocity());
-    if (!account.anchored) {
+    const Vec3 velocity = toVec3(body.getLinearVelocity()) + moved.head<3>();
+    const Vec3 turning = toVec3(body.getAngularVelocity()) + moved.tail<3>();
+    if (account.anchored) {
+        // No body gets faster at once than it or the cloth is.
+        const double fastest =
+            std::max(velocity.norm(), std::sqrt(step.from.v.rowwise().squaredNorm().maxCoeff()));
+        const double most = fastest + kTaut * step.length;
+        const double speed = (velocity + change.head<3>()).norm();
+        if (speed > most)
+            change.head<3>() = (most / speed) * (velocity + change.head<3>()) - velocity;
+    } else {
         // A collision does not give back more than it was, a taut cloth not more than 100 m/s^2.
-        const double most = 2.0 * account.meeting + 100.0 * step.length;
+        const double most = 2.0 * account.meeting + kTaut * step.length;
         if (change.head<3>().norm() > most) change *= most / change.head<3>().norm();
     }
     change.tail<3>() = limitedTurn(turning, change.tail<3>(), step.length);
     for (const Follower& follower : followers) {
-        const Vec3 velocity = change.head<3>() + change.tail<3>().cross(follower.arm);
-        step.to.v.row(follower.node) += follower.weight * velocity.transpose();
+        const Vec3 follows = change.head<3>() + change.tail<3>().cross(follower.arm);
+        step.to.v.row(follower.node) += follower.weight * follows.transpose();
     }
-    account.planned = mass * change;
+    account.planned = mass * (moved + change);
     account.plan_time = step.length;
+}
+
+/// What node forces, moving solids that cannot be pushed, and pins that are no anchors of dynamic
+/// bodies put into the cloth (J). What they take out does not count.
+double TwoWayCoupling::workFromOutside(const ClothStep& step) const {
+    double work = 0.0;
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        const auto n = static_cast<size_t>(i);
+        const double mass = m_masses[i];
+        const Vec3 path = step.to.x.row(i) - step.from.x.row(i);
+        if (step.boundary.accelerations.size())
+            work += mass * std::max(0.0, step.boundary.accelerations.row(i).dot(path));
+        if (m_holder[n] || !m_held[n]) continue;
+        const int s = m_touches.solid[n];
+        if (s >= 0 && step.near[static_cast<size_t>(s)].body) continue;  // it pinches
+        Vec3 impulse = mass * (step.to.v.row(i) - m_free.row(i));
+        Vec3 velocity = path / step.length;
+        if (s >= 0)
+            velocity =
+                step.near[static_cast<size_t>(s)].velocity(m_touches.place.row(i), step.length);
+        else if (mass == 0.0 && m_internal_known)
+            impulse = -step.length * m_internal.row(i);
+        work += std::max(0.0, impulse.dot(velocity));
+    }
+    return work;
+}
+
+/// Hands the planned impulses to the balance of energy. Anchored nodes move with their bodies, also
+/// where it took some of them.
+void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
+    std::vector<EnergyBalance::Share> shares;
+    for (auto& [body, account] : m_accounts)
+        shares.push_back({body, &account.planned, account.anchored, account.lift});
+    const EnergyBalance::Result result =
+        m_energy.settle(step,
+                        {m_masses, m_mass_ratio, workFromOutside(step),
+                         floatsFreely(m_body, step) && allSolidsKnown(step)},
+                        shares);
+    m_calmed = result.much && !m_accounts.empty();
+    m_held_back = result.held;
+    for (auto& [body, account] : m_accounts) account.gain = gainOf(*body, account.planned);
+    if (!result.limited) return;
+    for (const int pin : step.garment.pins()) {
+        const auto found = m_accounts.find(m_holder[static_cast<size_t>(pin)]);
+        if (found == m_accounts.end()) continue;
+        const btRigidBody& body = *found->first;
+        const Vector6 after = motionOf(body) + massMatrix(body).ldlt().solve(found->second.planned);
+        const Vec3 arm = Vec3(step.to.x.row(pin)) - centreOf(body);
+        const Vec3 velocity = after.head<3>() + after.tail<3>().cross(arm);
+        if (fitsFloats(velocity)) step.to.v.row(pin) = velocity;
+    }
 }
 
 /// The pointer of a body that is gone must not be followed.
@@ -343,10 +437,14 @@ void TwoWayCoupling::apply(double h, const std::vector<NearSolid>& near) {
     forgetAbsent(near);
     for (auto& [body, account] : m_accounts) {
         const double part = h < account.plan_time ? h / account.plan_time : 1.0;
-        const Vector6 now = part * account.planned;
+        Vector6 now = part * account.planned;
         account.planned -= now;
-        account.plan_time = std::max(0.0, account.plan_time - h);
         if (!isDynamic(*body) || !fitsFloats(now)) continue;
+        // Where something else has stopped the body since, the rest would make energy.
+        const double falling = account.plan_time * toVec3(m_body.m_worldInfo->m_gravity).norm();
+        now *= partThatGains(*body, now, account.gain + falling * now.head<3>().norm());
+        account.gain -= gainOf(*body, now);
+        account.plan_time = std::max(0.0, account.plan_time - h);
         body->applyCentralImpulse(toBullet(Vec3(now.head<3>())));
         body->applyTorqueImpulse(toBullet(Vec3(now.tail<3>())));
         m_last_impulse += now.head<3>();

@@ -71,6 +71,11 @@ class Stepper {
     /// Time step this stepper is made for (s); 0 if it accepts any.
     virtual double fixed_dt() const { return 0.0; }
 
+    /// Whether it takes steps of other lengths too, without what is made for fixed_dt(). If not,
+    /// Bullet's bodies that are anchored to the cloth are foreseen over fixed_dt(), and light ones
+    /// on stiff cloth may be thrown.
+    virtual bool accepts_any_dt() const { return fixed_dt() == 0.0; }
+
     /// Builds ahead of time what steps of this length (s) need, such as factorisations. Without it
     /// the first such step builds them.
     virtual void prepare(double dt) { (void)dt; }
@@ -86,6 +91,12 @@ class Stepper {
     virtual bool internal_forces(const Points& x, Points& forces) const {
         (void)x, (void)forces;
         return false;
+    }
+
+    /// Energy of these forces at x (J); none: this stepper does not know.
+    virtual std::optional<double> internal_energy(const Points& x) const {
+        (void)x;
+        return std::nullopt;
     }
 
     /// Limbs that each vertex ignored in the last step (|V|), see LimbOverlap; empty: none did.

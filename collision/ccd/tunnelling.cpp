@@ -172,6 +172,7 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
         const int end = std::min(count, (part + 1) * points_per_part);
         for (int i = part * points_per_part; i < end; ++i) {
             if (m_pinned[static_cast<size_t>(i)]) continue;
+            if ((ignored_limbs(boundary, i) & mesh.solid) != 0) continue;
             const LimbSet ignored = limbs ? ignored_limbs(boundary, i) : 0;
             Crossing crossing = cross(mesh, *tree, x0.row(i), x1.row(i), ignored, stack);
             if (!crossing.in.known && !crossing.out.known) continue;
@@ -204,10 +205,13 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
     };
     const int count = static_cast<int>(x0.rows());
     for (int i = 0; i < count; ++i)
-        if (!m_pinned[static_cast<size_t>(i)]) follow(i, x0.row(i), x1.row(i));
+        if (!m_pinned[static_cast<size_t>(i)] && (ignored_limbs(boundary, i) & shape.solid) == 0)
+            follow(i, x0.row(i), x1.row(i));
     for (int sample = 0; sample < m_samples.count(); ++sample) {
         const SurfaceSamples::Corners corners = m_samples.corners(sample);
-        if (m_samples.is_movable(sample))
+        LimbSet ignored = 0;
+        for (const int vertex : corners.vertex) ignored |= ignored_limbs(boundary, vertex);
+        if (m_samples.is_movable(sample) && (ignored & shape.solid) == 0)
             follow(count + sample, corners.position(x0), corners.position(x1));
     }
 }

@@ -214,6 +214,8 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     if (ignores_nothing()) return boundary;
     m_boundary = boundary;
     m_boundary.ignored_limbs = m_ignored;
+    for (size_t i = 0; i < m_own.size(); ++i)
+        m_boundary.ignored_limbs[i] |= ignored_limbs(boundary, static_cast<int>(i));
     return m_boundary;
 }
 

@@ -47,8 +47,8 @@ class LimbOverlap {
     explicit LimbOverlap(const LimbOverlapSettings& settings = {},
                          std::shared_ptr<ObstacleTrees> trees = nullptr);
 
-    /// The boundary with Boundary::ignored_limbs of the step that begins; itself, if no vertex
-    /// ignores any. It is valid until the next call.
+    /// The boundary with the limbs that are ignored in the step that begins added to
+    /// Boundary::ignored_limbs; itself, if no vertex ignores any. It is valid until the next call.
     const Boundary& filter(const Boundary& boundary, double dt, const ClothState& state);
 
     /// How far the vertices are inside limbs that they ignored in the last step, at its end. What

@@ -102,6 +102,7 @@ Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t p
     Nearest nearest;
     if (!x.allFinite()) return nearest;
     for (const Target& target : targets) {
+        if ((target.obstacle->solid & ignored) != 0) continue;
         if (target.surface) {
             const SurfaceHit& hit = nearest_on_mesh(target, x, point, radius, ignored, stack);
             if (hit.face < 0 || hit.distance >= nearest.distance) continue;

@@ -506,10 +506,8 @@ TEST(GnnSolver, GivenGarmentAndStepperAreUsed) {
     EXPECT_THROW(solver.attach(other, garment), ArgumentError);
 }
 
-TEST(GnnSolver, MaterialsChooseTheFabricIfTheyAreAsked) {
-    btGnnSolverSettings settings;
-    settings.useBodyMaterials = true;
-    btGnnSoftBodySolver solver(free_fall(), settings);
+TEST(GnnSolver, ClothIsAsStiffAsItsMaterialsSay) {
+    btGnnSoftBodySolver solver(free_fall());
     World world(&solver);
     btSoftBody* stiff = world.add(patch(world.info(), {0, 0, 0}));
     btSoftBody* soft = world.add(patch(world.info(), {0, 2, 0}));
@@ -517,7 +515,7 @@ TEST(GnnSolver, MaterialsChooseTheFabricIfTheyAreAsked) {
     btSoftBody* bent = world.add(patch(world.info(), {0, 4, 0}));
     bent->m_materials[0]->m_kLST = 0.5f;
     btSoftBody::Material* bending = bent->appendMaterial();
-    bending->m_kLST = 1;
+    bending->m_kLST = 0.25f;
     bent->generateBendingConstraints(2, bending);
     world.step(1.0 / 60.0);
     const auto young = [&](const btSoftBody* body) {
@@ -525,9 +523,30 @@ TEST(GnnSolver, MaterialsChooseTheFabricIfTheyAreAsked) {
     };
     EXPECT_NEAR(young(stiff), 5000, 1e-6);
     EXPECT_NEAR(young(soft), 33, 1e-6);
-    EXPECT_NEAR(young(bent), std::sqrt(33.0 * 5000.0), 1e-6);
+    EXPECT_NEAR(young(bent), (33.0 + 5000.0) / 2, 1e-6);
     EXPECT_NEAR(solver.garmentOf(stiff)->fabric().bending, 4e-6, 1e-12);
-    EXPECT_NEAR(solver.garmentOf(bent)->fabric().bending, 4e-4, 1e-10);
+    const double edge = (40 * 0.25 + 16 * 0.25 * std::sqrt(2.0)) / 56;  // a diagonal a square
+    EXPECT_NEAR(solver.garmentOf(bent)->fabric().bending, 84 * std::pow(edge, 4) * 0.5, 1e-6);
+    for (const btSoftBody* body : {stiff, soft, bent})
+        EXPECT_EQ(solver.garmentOf(body)->fabric().density, 0.2);
+}
+
+TEST(GnnSolver, AFabricForAllClothReplacesTheMaterials) {
+    btGnnSolverSettings settings;
+    settings.fabric = Fabric::soft_cotton();
+    btGnnSoftBodySolver as_it_is(free_fall(), settings);
+    settings.useBodyDensity = true;
+    btGnnSoftBodySolver of_its_mass(free_fall(), settings);
+    for (btGnnSoftBodySolver* solver : {&as_it_is, &of_its_mass}) {
+        World world(solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        cloth->setTotalMass(0.5f, true);
+        world.step(1.0 / 60.0);
+        const Fabric& fabric = solver->garmentOf(cloth)->fabric();
+        EXPECT_EQ(fabric.mu, Fabric::soft_cotton().mu);
+        EXPECT_NEAR(fabric.density, solver == &as_it_is ? Fabric::soft_cotton().density : 0.5,
+                    1e-5);
+    }
 }
 
 TEST(GnnSolver, EveryBodyMayHaveItsOwnFabricAndStepper) {

@@ -118,3 +118,41 @@ TEST(TimeSteps, NothingStutters) {
     EXPECT_EQ(repeated, 0);  // a still frame between moving ones is what an eye calls stutter
     EXPECT_LT(roughest, 0.5 * fastest);
 }
+
+// Light cloth in thick air is stopped within a few world steps, each of which takes half of the
+// velocity that it sees. If all steps of a cloth step saw the same one, the cloth would fly back
+// faster than it came.
+TEST(TimeSteps, AirNeverTurnsClothRound) {
+    for (double fixed : {0.0, 1.0 / 30}) {
+        btGnnSoftBodySolver solver(free_fall(nullptr, fixed));
+        World world(&solver);
+        world.info().m_gravity.setZero();
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        cloth->m_cfg.aeromodel = btSoftBody::eAeroModel::V_TwoSided;
+        cloth->m_cfg.kDG = 0.5f;
+        cloth->setTotalMass(0.02f);
+        cloth->setVelocity({0, 10, 0});
+        double last = 10.0;
+        for (int i = 0; i < 240; ++i) {
+            world.step(1.0 / 240.0);
+            const double velocity = static_cast<double>(cloth->m_nodes[12].m_v.y());
+            ASSERT_LE(velocity, last + 1e-6) << fixed << " s, step " << i;
+            ASSERT_GE(velocity, -1e-3) << fixed << " s, step " << i;
+            last = velocity;
+        }
+        EXPECT_LT(last, 5.0) << fixed;
+    }
+}
+
+TEST(TimeSteps, PinsInWindMoveByTheirVelocity) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 5, 1));
+    cloth->m_cfg.kDG = 0.5f;
+    cloth->setWindVelocity({0, 0, 3});
+    world.step(1.0 / 60.0);
+    const double before = node(*cloth, 0).x();
+    cloth->m_nodes[0].m_v = {0.6f, 0, 0};
+    world.step(1.0 / 60.0);
+    EXPECT_NEAR(node(*cloth, 0).x() - before, 0.01, 1e-5);
+}

@@ -41,7 +41,7 @@ void weightless(World& world) {
 
 TEST(TwoWayCoupling, ABoxThatDragsClothIsSlowedByIt) {
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt));
+        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
         World world(&solver);
         weightless(world);
         btRigidBody* box =
@@ -60,7 +60,7 @@ TEST(TwoWayCoupling, ABoxThatDragsClothIsSlowedByIt) {
 
 TEST(TwoWayCoupling, ABallThatHitsClothGivesItWhatItLoses) {
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt));
+        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
         World world(&solver);
         weightless(world);
         btRigidBody* ball = world.add(new btSphereShape(0.15f), {0, -0.25f, 0}, false, 0.3f);
@@ -77,7 +77,7 @@ TEST(TwoWayCoupling, ABallThatHitsClothGivesItWhatItLoses) {
 
 TEST(TwoWayCoupling, WhatTheStepperDidNotSolveCostsNoMomentum) {
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt, 1));
+        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt, 1), soft_cotton());
         World world(&solver);
         weightless(world);
         btRigidBody* ball = world.add(new btSphereShape(0.15f), {0.3f, -0.25f, 0.3f}, false, 0.1f);
@@ -93,7 +93,7 @@ TEST(TwoWayCoupling, WhatTheStepperDidNotSolveCostsNoMomentum) {
 
 TEST(TwoWayCoupling, ABallLiesInAHammock) {
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt));
+        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
         World world(&solver);
         btRigidBody* ball = world.add(new btSphereShape(0.15f), {0, 0.2f, 0}, false, 0.1f);
         ball->setActivationState(DISABLE_DEACTIVATION);
@@ -120,7 +120,7 @@ TEST(TwoWayCoupling, ABallLiesInAHammock) {
 
 TEST(TwoWayCoupling, ALightBoxOnHeavyClothDoesNotRunAway) {
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt, 8));
+        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt, 8), soft_cotton());
         World world(&solver);
         btRigidBody* box =
             world.add(new btBoxShape({0.1f, 0.1f, 0.1f}), {-0.5f, 0, -0.6f}, false, 0.5f);
@@ -158,7 +158,7 @@ TEST(TwoWayCoupling, AWeakAnchorPullsBothEnds) {
         for (const int anchored : {12, 0}) {
             SCOPED_TRACE(std::to_string(c.fixed_dt) + " " + std::to_string(c.rate) + " node " +
                          std::to_string(anchored));
-            btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt));
+            btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
             World world(&solver);
             weightless(world);
             btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 5));
@@ -179,7 +179,7 @@ TEST(TwoWayCoupling, AWeakAnchorPullsBothEnds) {
 }
 
 TEST(TwoWayCoupling, BodiesThatLeaveTheWorldAreForgotten) {
-    btGnnSoftBodySolver solver(quasi_newton(1.0 / 30.0));
+    btGnnSoftBodySolver solver(quasi_newton(1.0 / 30.0), soft_cotton());
     World world(&solver);
     btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 7));
     auto shape = std::make_unique<btSphereShape>(0.2f);

@@ -214,7 +214,7 @@ TEST_P(StepperContract, TakesAnyTimeStep) {
     CLOTH_SKIP_UNLESS_PROMISED(Promise::any_time_step);
     SolverScene scene = busy_scene();
     const std::unique_ptr<Stepper> stepper = make(scene.garment);
-    ASSERT_EQ(stepper->fixed_dt(), 0.0) << "a stepper of one time step does not promise any";
+    ASSERT_TRUE(stepper->accepts_any_dt());
     for (const double h : {0.1, 1.0 / 30.0, 1.0 / 60.0, 1.0 / 240.0, 1e-4}) {
         ClothState state = scene.state;
         ASSERT_TRUE(stepper->step(scene.boundary, h, state).finite) << h;

@@ -179,6 +179,10 @@ void IncrementalPotential::internal_forces(const Points& x, Points& forces) cons
     forces = -forces;
 }
 
+double IncrementalPotential::internal_energy(const Points& x) const {
+    return m_strain.value(x) + m_bending.value(x);
+}
+
 void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
                                    HessianKind kind) const {
     m_pattern->reset(hessian);

@@ -91,6 +91,9 @@ class IncrementalPotential {
     /// Forces of strain and bending (|V| x 3, N), minus the gradient; on pinned vertices too.
     void internal_forces(const Points& x, Points& forces) const;
 
+    /// Energy of strain and bending (J).
+    double internal_energy(const Points& x) const;
+
     /// Norm of inertia's and gravity's forces at x_t over the free vertices (N): residual's scale.
     double force_scale() const { return m_force_scale; }
 

@@ -1,6 +1,7 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "data/core/check_range.h"
@@ -136,9 +137,15 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
                                     ClothState& state) {
     const bool search_it = is_watched() && motion > m_guard.watch_motion;
     if (search_it) m_x_before = state.x;
-    StepReport report = m_solver->whole(boundary, dt, state);
+    StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
+                                        : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_x_before, state.x, report);
     return report;
+}
+
+bool ClothStepper::is_made_for(double dt) const {
+    constexpr double kSame = 1e-3;  // callers' time steps are floats
+    return fixed_dt() == 0.0 || std::abs(dt - fixed_dt()) < kSame * fixed_dt();
 }
 
 StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, double dt,

@@ -98,10 +98,15 @@ class ClothStepper : public Stepper {
     /// The solver's; of steps that are always cut "xN" follows.
     std::string name() const override;
     double fixed_dt() const override { return m_solver->fixed_dt(); }
+    /// Steps of other lengths than fixed_dt() are taken as parts of steps are: without a network.
+    bool accepts_any_dt() const override { return true; }
     /// Factorises for steps of this length and for their parts.
     void prepare(double dt) override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     bool internal_forces(const Points& x, Points& forces) const override;
+    std::optional<double> internal_energy(const Points& x) const override {
+        return m_solver->internal_energy(x);
+    }
     const std::vector<LimbSet>& ignored_limbs() const override { return m_limbs.ignored(); }
 
     const StepSolver& solver() const { return *m_solver; }
@@ -121,6 +126,7 @@ class ClothStepper : public Stepper {
         Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
 
+    bool is_made_for(double dt) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take(int substeps, const Boundary& boundary, double dt, double motion,

@@ -75,6 +75,8 @@ class StepSolver {
         m_potential.internal_forces(x, forces);
     }
 
+    double internal_energy(const Points& x) const { return m_potential.internal_energy(x); }
+
     /// Where the last whole step started (|V| x 3, m): the prediction, if there was one.
     const Points& start() const { return m_started; }
     const SelfContactProjection& self_contact() const { return m_self_contact; }  ///< last step's

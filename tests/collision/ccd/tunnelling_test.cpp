@@ -257,6 +257,26 @@ TEST(Tunnelling, PassOverPinsAndIgnoredLimbs) {
     EXPECT_EQ(vertices_of(detector.find(boundary, x, x, 0), x.rows()), expected);
 }
 
+TEST(Tunnelling, PassOverIgnoredSolids) {
+    const Pose from = pose_of({0, -0.03, 0}), to = pose_of({0, 0.04, 0});
+    for (Obstacle obstacle :
+         {moving(scaled(cube(), {0.3, 0.01, 0.3}), from, to),
+          moving(primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0), from, to)}) {
+        obstacle.solid = 1u << 31;
+        Boundary boundary = boundary_of({obstacle});
+        const Garment garment = sheet();
+        const Points& x = garment.rest().vertices;
+        TunnellingDetector detector(garment);
+        std::set<int> expected = vertices_of(detector.find(boundary, x, x, 0), x.rows());
+        ASSERT_GT(expected.size(), 10u);
+        const int last = *expected.rbegin();
+        boundary.ignored_limbs.assign(static_cast<size_t>(x.rows()), 1u << 30);
+        boundary.ignored_limbs[static_cast<size_t>(last)] = 1u << 31;
+        expected.erase(last);
+        EXPECT_EQ(vertices_of(detector.find(boundary, x, x, 0), x.rows()), expected);
+    }
+}
+
 TEST(Tunnelling, LimbsOutOfRangeAreNone) {
     const TriMesh plate = scaled(cube(), {0.3, 0.01, 0.3});
     Obstacle obstacle = moving(plate, pose_of({0, -0.03, 0}), pose_of({0, 0.04, 0}));

@@ -45,6 +45,25 @@ TEST(Proximity, EqualsBruteForceOnRandomMeshes) {
     }
 }
 
+TEST(Proximity, PassesOverIgnoredSolids) {
+    Obstacle ball = primitive(ObstacleShape::sphere, Vec3::Zero(), 0.05);
+    ball.solid = 1u << 31;
+    Obstacle mesh = mesh_obstacle(icosphere(3));
+    mesh.x0 = mesh.x1 = 0.2 * mesh.x0;
+    Boundary boundary = boundary_of({ball, mesh});
+    Points x(2, 3);
+    x << 0.22, 0, 0, 0.22, 0, 0;
+    boundary.obstacles[0].radius = 0.21;
+    boundary.ignored_limbs = {0, 1u << 31};
+    Proximity proximity;
+    SurfaceContacts contacts;
+    proximity.query(x, boundary, contacts);
+    EXPECT_EQ(contacts.obstacle, (std::vector<int>{0, 1}));
+    boundary.obstacles[1].solid = 1u << 31;
+    proximity.query(x, boundary, contacts);
+    EXPECT_EQ(contacts.obstacle, (std::vector<int>{0, -1}));
+}
+
 /// Boxes are in single precision: far from the world's origin that must not show.
 TEST(Proximity, EqualsBruteForceFarFromTheOrigin) {
     std::mt19937 random(4);

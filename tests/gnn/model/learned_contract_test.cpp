@@ -18,8 +18,7 @@ StepperCase learned(const std::string& variant, int refine) {
     std::map<Promise, std::string> exceptions = {
         {Promise::free_fall, learnt},
         {Promise::rest, learnt},
-        {Promise::yaw_equivariance, "learned from turned scenes, not built in"},
-        {Promise::any_time_step, "the network knows one time step"}};
+        {Promise::yaw_equivariance, "learned from turned scenes, not built in"}};
     if (ModelConfig::variant_named(variant).sampled_edges > 0)
         exceptions[Promise::permutation_invariance] =
             "the sampling schedule follows the order of vertices";

@@ -223,6 +223,21 @@ TEST_F(NetworkStep, EnergiesOfGuessAndPredictionComeFromTheFeatures) {
     EXPECT_EQ(m_state.x, other.x);
 }
 
+TEST_F(NetworkStep, StepsOfAnotherLengthAreMadeWithoutTheNetwork) {
+    const auto learned = made(Vec3(0, -2.0, 0), 0);
+    EXPECT_TRUE(learned->accepts_any_dt());
+    ClothState other = m_state, unguarded = m_state;
+    ASSERT_TRUE(learned->step(m_boundary, 0.5 * m_dt, other).finite);
+    EXPECT_EQ(learned->solver().start().rows(), 0);
+    ClothStepperSettings settings;
+    settings.step.quasi_newton = GuardSettings().iterations;
+    settings.guard = GuardSettings::off();
+    ClothStepper(m_garment, settings).step(m_boundary, 0.5 * m_dt, unguarded);
+    EXPECT_EQ(other.x, unguarded.x);
+    ASSERT_TRUE(learned->step(m_boundary, m_dt * (1.0 + 1e-6), m_state).finite);
+    EXPECT_EQ(learned->solver().start().rows(), m_state.x.rows()) << "rounding of a float";
+}
+
 TEST_F(NetworkStep, WithoutANetworkClothIsPhysicsAlone) {
     const auto cloth = make_cloth(m_garment);
     EXPECT_EQ(cloth->name(), "quasi-newton");

@@ -1,0 +1,133 @@
+#include "bullet_ext/energyBalance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cloth {
+
+namespace {
+
+double motionAndHeight(const ClothStep& step, const VectorX& masses, const ClothState& state) {
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < masses.size(); ++i)
+        sum += masses[i] *
+               (0.5 * state.v.row(i).squaredNorm() - step.boundary.gravity.dot(state.x.row(i)));
+    return sum;
+}
+
+/// Takes energy from the motion of nodes that are not pinned. Returns what is left.
+double calmCloth(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
+    VectorX masses = cloth.masses;
+    for (const int pin : step.garment.pins()) masses[pin] = 0.0;
+    const double mass = masses.sum();
+    if (!(mass > 0.0)) return surplus;
+    Points& v = step.to.v;
+    const Eigen::RowVector3d mean = (cloth.floats ? 1.0 / mass : 0.0) * (masses.transpose() * v);
+    const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
+    if (!(moving > 0.0)) return surplus;
+    const double taken = std::min(surplus, moving), kept = std::sqrt(1.0 - taken / moving);
+    for (Eigen::Index i = 0; i < masses.size(); ++i)
+        if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
+    return surplus - taken;
+}
+
+/// Takes the same part of what each body gains.
+double limitGains(std::vector<EnergyBalance::Share>& shares, double surplus) {
+    double gains = 0.0;
+    for (const auto& share : shares) gains += std::max(0.0, gainOf(*share.body, *share.impulse));
+    if (!(surplus > 0.0) || !(gains > 0.0)) return surplus;
+    const double taken = std::min(surplus, gains);
+    for (auto& share : shares) {
+        const double gain = std::max(0.0, gainOf(*share.body, *share.impulse));
+        *share.impulse *= partThatGains(*share.body, *share.impulse, (1.0 - taken / gains) * gain);
+    }
+    return surplus - taken;
+}
+
+/// Takes the same part of the motion of each body that the cloth is anchored to.
+double brake(std::vector<EnergyBalance::Share>& shares, double surplus) {
+    const auto motionAfter = [](const EnergyBalance::Share& share) -> Vector6 {
+        return massMatrix(*share.body) * motionOf(*share.body) + *share.impulse;
+    };
+    double moving = 0.0;
+    for (const auto& share : shares)
+        if (share.anchored) {
+            const Vector6 after = motionAfter(share);
+            moving += 0.5 * after.dot(massMatrix(*share.body).ldlt().solve(after));
+        }
+    if (!(surplus > 0.0) || !(moving > 0.0)) return surplus;
+    const double taken = std::min(surplus, moving), kept = std::sqrt(1.0 - taken / moving);
+    for (auto& share : shares)
+        if (share.anchored) *share.impulse -= (1.0 - kept) * motionAfter(share);
+    return surplus - taken;
+}
+
+/// Energy of the cloth at rest (J).
+double energyAt(const ClothStep& step, const EnergyBalance::Cloth& cloth, const Points& x) {
+    return cloth.mass_ratio * step.stepper.internal_energy(x).value_or(0.0) -
+           cloth.masses.dot(x * step.boundary.gravity);
+}
+
+/// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
+double holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
+    const double whole = energyAt(step, cloth, step.to.x);
+    Points best = step.to.x;
+    double taken = 0.0;
+    for (const double part : {0.5, 0.25, 0.0}) {
+        if (taken >= surplus) break;
+        Points x = step.from.x + part * (step.to.x - step.from.x);
+        for (const int pin : step.garment.pins()) x.row(pin) = step.to.x.row(pin);
+        const double less = whole - energyAt(step, cloth, x);
+        if (less > taken) taken = less, best = x;
+    }
+    step.to.x = best;
+    return std::max(0.0, surplus - taken);
+}
+
+}  // namespace
+
+EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& cloth,
+                                            std::vector<Share>& shares) {
+    constexpr double kForget = 1.0;  // s
+    constexpr double kSlow = 0.5;    // m/s: motion of all of the cloth that nobody would miss
+    constexpr double kTell = 10.0;   // times that energy
+    const std::optional<double> energy = step.stepper.internal_energy(step.to.x);
+    if (!energy || !(allSolidsKnown(step) || obstaclesStand(step.boundary))) {
+        forget();
+        return {};
+    }
+    if (!m_elastic || !step.continues) {
+        m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.from.x).value_or(0.0);
+        m_debt = 0.0;
+    }
+    const double before = motionAndHeight(step, cloth.masses, step.from) + *m_elastic - m_debt;
+    m_elastic = cloth.mass_ratio * *energy;
+    double after = motionAndHeight(step, cloth.masses, step.to) + *m_elastic;
+    for (const Share& share : shares) after += gainOf(*share.body, *share.impulse) + share.lift;
+    const bool borne = std::any_of(step.near.begin(), step.near.end(),
+                                   [](const NearSolid& solid) { return !solid.body; });
+    const bool anchored = std::any_of(shares.begin(), shares.end(),
+                                      [](const Share& share) { return share.anchored; });
+    const double little = 0.5 * cloth.masses.sum() * kSlow * kSlow;
+    const double surplus = after - before - cloth.work;
+    m_debt = 0.0;
+    // Bullet pushes bodies that lie in hanging cloth about all the time, and that is work.
+    const bool piled = !shares.empty() && !borne && !anchored;
+    Result result;
+    if (!(surplus > (piled ? little : 0.0))) return result;
+    double left = calmCloth(step, cloth, surplus);
+    result.much = left > kTell * little;
+    result.limited = left > 0.0;
+    left = limitGains(shares, left);
+    if (!cloth.floats) left = brake(shares, left);
+    // Where nothing else bears a body, cloth that is held back would let it through.
+    result.held = left > little && borne;
+    if (result.held) {
+        left = holdBack(step, cloth, left);
+        m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.to.x).value_or(0.0);
+    }
+    if (!piled) m_debt = left * std::exp(-step.length / kForget);
+    return result;
+}
+
+}  // namespace cloth

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "bullet_ext/clothStep.h"
+#include "bullet_ext/rigidImpulse.h"
+
+namespace cloth {
+
+/// The last limit of two-way coupling: what cloth and bodies have after a cloth step, they had
+/// before it, or the world put it in. Energy that came from nowhere is taken from the motion of the
+/// cloth, without changing its momentum where nothing else holds it, then from what bodies gain,
+/// then from all motion of bodies that the cloth is anchored to. Where the fabric itself took up
+/// more than that, and there is ground that can bear the bodies, the cloth does not go all the way:
+/// rather inside a body for a while than thrown.
+/// What would lift the cloth by little more than a centimetre, as contacts do that push it out, is
+/// owed there, and where bodies are anchored, and paid when it becomes motion.
+///
+/// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there only
+/// what is much more than that is taken.
+///
+/// The fabric takes part in the balance, so its energy has to be known, and all that the cloth
+/// touches: without Stepper::internal_energy(), or near animated meshes, nothing is done.
+class EnergyBalance {
+ public:
+    /// A body that an impulse is planned for.
+    struct Share {
+        const btRigidBody* body;
+        Vector6* impulse;  ///< changed
+        bool anchored;     ///< to the cloth
+        double lift;       ///< energy that it got by being moved (J)
+    };
+    struct Cloth {
+        const VectorX& masses;  ///< |V| (kg), 0: nothing moves the node
+        double mass_ratio;      ///< massRatio()
+        double work;            ///< that the world put into it during the step (J)
+        bool floats;            ///< nothing that cannot be pushed holds it
+    };
+
+    struct Result {
+        bool much = false;     ///< the step made much more than there was in the cloth's motion
+        bool held = false;     ///< the cloth was held back
+        bool limited = false;  ///< impulses were changed
+    };
+    /// Takes energy that the step made from velocities and impulses, and from the way of the cloth.
+    Result settle(const ClothStep& step, const Cloth& cloth, std::vector<Share>& shares);
+    /// The next step does not go on from the last one.
+    void forget() { m_elastic.reset(); }
+
+ private:
+    std::optional<double> m_elastic;  ///< of the fabric after the last cloth step (J)
+    double m_debt = 0.0;              ///< energy that could not be taken yet (J)
+};
+
+}  // namespace cloth

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "bullet_ext/softBodyGarment.h"
+#include "tests/bullet_ext/bullet_world.h"
+
+namespace cloth::test {
+
+/// Measures the energy of cloth and rigid bodies around each world step of the cloth. What Bullet
+/// does to its bodies before that, such as lifting them out of each other, does not count.
+class MeteredSolver : public btGnnSoftBodySolver {
+ public:
+    using btGnnSoftBodySolver::btGnnSoftBodySolver;
+
+    std::vector<btRigidBody*> bodies;  ///< that count
+    btSoftBody* cloth = nullptr;       ///< that counts
+
+    /// Energy of motion and height that the steps of the cloth have made out of nothing at most, up
+    /// to any moment, less what they have taken away till then (J).
+    double made() const { return m_made; }
+    /// The same at present, and with the energy of the fabric. In the step in which a body hits it,
+    /// the fabric may take up more than the body loses; it keeps that from becoming motion.
+    double balance() const { return m_balance; }
+    /// Most energy that there was in motion (J): what the others are compared with.
+    double scale() const { return m_scale; }
+
+    void solveConstraints(btScalar h) override {
+        const double motion = energy(), before = motion + elastic();
+        btGnnSoftBodySolver::solveConstraints(h);
+        const double now = energy();
+        m_gained += now - motion;
+        m_made = std::max(m_made, m_gained);
+        m_balance += now + elastic() - before;
+        m_scale = std::max(m_scale, m_moving);
+    }
+
+    /// Of motion and height (J).
+    double energy() {
+        double sum = 0.0;
+        m_moving = 0.0;
+        for (const btRigidBody* body : bodies) {
+            m_moving += kinetic(*body);
+            if (body->getInvMass() > 0)
+                sum -= toVec3(body->getGravity()).dot(toVec3(body->getCenterOfMassPosition())) /
+                       body->getInvMass();
+        }
+        const Garment* garment = garmentOf(cloth);
+        const double ratio = garment ? massRatio(*cloth, *garment) : 0.0;
+        for (int i = 0; garment && i < cloth->m_nodes.size(); ++i) {
+            const btSoftBody::Node& node = cloth->m_nodes[i];
+            if (!(node.m_im > 0)) continue;
+            const double mass = ratio * garment->masses()[i];
+            m_moving += 0.5 * mass * toVec3(node.m_v).squaredNorm();
+            sum -= mass * toVec3(cloth->m_worldInfo->m_gravity).dot(toVec3(node.m_x));
+        }
+        return sum + m_moving;
+    }
+
+    /// Of the fabric (J).
+    double elastic() const {
+        const Garment* garment = garmentOf(cloth);
+        return garment ? massRatio(*cloth, *garment) *
+                             stepperOf(cloth)->internal_energy(nodePositions(*cloth)).value_or(0.0)
+                       : 0.0;
+    }
+
+    static double kinetic(const btRigidBody& body) {
+        if (!(body.getInvMass() > 0)) return 0.0;
+        const Vec3 turn = toMatrix(body.getWorldTransform().getBasis()).transpose() *
+                          toVec3(body.getAngularVelocity());
+        const Vec3 inverse = toVec3(body.getInvInertiaDiagLocal());
+        double sum = 0.5 * toVec3(body.getLinearVelocity()).squaredNorm() / body.getInvMass();
+        for (int c = 0; c < 3; ++c)
+            if (inverse[c] > 0.0) sum += 0.5 * turn[c] * turn[c] / inverse[c];
+        return sum;
+    }
+
+ private:
+    double m_balance = 0.0, m_gained = 0.0, m_made = 0.0, m_scale = 0.0, m_moving = 0.0;
+};
+
+}  // namespace cloth::test

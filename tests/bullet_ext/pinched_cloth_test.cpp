@@ -1,0 +1,239 @@
+// Cloth that bodies close on: it has no room, and stays calm.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/bullet_ext/bullet_world.h"
+#include "tests/bullet_ext/metered_solver.h"
+#include "tests/bullet_ext/physical_steppers.h"
+
+using namespace cloth;
+using namespace cloth::test;
+
+namespace {
+
+btScalar real(int number) {
+    return static_cast<btScalar>(number);
+}
+
+btSoftBody* sheet(World& world, btScalar half, btScalar y, int n, int pins = 0) {
+    return btSoftBodyHelpers::CreatePatch(world.info(), {-half, y, -half}, {half, y, -half},
+                                          {-half, y, half}, {half, y, half}, n, n, pins, true);
+}
+
+double fastest(const btSoftBody& cloth) {
+    double speed = 0.0;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        speed = std::max(speed, static_cast<double>(cloth.m_nodes[i].m_v.length()));
+    return speed;
+}
+
+double highest(const btSoftBody& cloth) {
+    double y = -1e9;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i) y = std::max(y, node(cloth, i).y());
+    return y;
+}
+
+std::string messages(const btGnnSoftBodySolver& solver) {
+    std::string all;
+    for (const btGnnSolverMessage& message : solver.status().messages) all += message.text + "\n";
+    return all;
+}
+
+btCollisionShape* ground(int kind) {
+    if (kind == 0) return new btStaticPlaneShape({0, 1, 0}, 0);
+    auto* slab = new btCompoundShape;
+    static btBoxShape box({10, 0.5f, 10});
+    slab->addChildShape(btTransform(btQuaternion::getIdentity(), {0, -0.5f, 0}), &box);
+    return slab;
+}
+
+}  // namespace
+
+TEST(PinchedCloth, ABoxThatLandsOnClothOnTheGroundStaysThere) {
+    for (const int kind : {0, 1})
+        for (const double fixed : {0.0, 1.0 / 30.0}) {
+            SCOPED_TRACE(std::to_string(kind) + " " + std::to_string(fixed));
+            btGnnSoftBodySolver solver(quasi_newton(fixed));
+            World world(&solver);
+            world.add(ground(kind), {0, 0, 0});
+            btSoftBody* cloth = world.add(sheet(world, 1, 0.01f, 21));
+            world.step(1.0 / 60.0, 60);
+            btRigidBody* box =
+                world.add(new btBoxShape({0.5f, 0.125f, 0.125f}), {0, 1.13f, 0}, false, 10);
+            double speed = 0.0, top = 0.0;
+            for (int i = 0; i < 90; ++i) {
+                world.step(1.0 / 60.0);
+                speed = std::max(speed, fastest(*cloth));
+                top = std::max(top, highest(*cloth));
+            }
+            EXPECT_LT(speed, 1.0);
+            EXPECT_LT(top, 0.1);
+            EXPECT_NEAR(box->getWorldTransform().getOrigin().y(), 0.125, 0.01);
+            EXPECT_LT(std::abs(box->getWorldTransform().getOrigin().x()), 0.05);
+            EXPECT_LT(std::abs(box->getWorldTransform().getOrigin().z()), 0.05);
+            EXPECT_LT(box->getLinearVelocity().length(), 0.05f);
+        }
+}
+
+// Nodes lie inside the box, as far as it leaves no room for them: that is told as it is.
+TEST(PinchedCloth, WhatIsShownInsideABodyIsMeasured) {
+    for (const double fixed : {0.0, 1.0 / 30.0}) {
+        btGnnSoftBodySolver solver(quasi_newton(fixed));
+        World world(&solver);
+        world.add(new btBoxShape({10, 0.5f, 10}), {0, -0.5f, 0});
+        btSoftBody* cloth = world.add(sheet(world, 0.5f, 0.005f, 9));
+        btRigidBody* ball = world.add(new btSphereShape(0.2f), {0, 0.5f, 0}, false, 10);
+        double deepest = 0.0;
+        for (int i = 0; i < 60; ++i) {
+            world.step(1.0 / 60.0);
+            double depth = 0.0;
+            for (int k = 0; k < cloth->m_nodes.size(); ++k) {
+                const Vec3 x = node(*cloth, k);
+                const Vec3 centre = toVec3(ball->getWorldTransform().getOrigin());
+                depth = std::max({depth, -x.y(), 0.2 - (x - centre).norm()});
+            }
+            EXPECT_GE(solver.status().maxPenetration, depth - 1e-4) << fixed << " step " << i;
+            deepest = std::max(deepest, depth);
+        }
+        EXPECT_GT(deepest, 2e-3) << fixed;
+    }
+}
+
+// A kinematic box presses cloth onto a table and lifts again.
+TEST(PinchedCloth, AKinematicBodyThatPressesClothOnATableDoesNotThrowIt) {
+    btGnnSoftBodySolver solver(quasi_newton());
+    World world(&solver);
+    world.add(new btBoxShape({2, 0.5f, 2}), {0, -0.5f, 0});
+    btSoftBody* cloth = world.add(sheet(world, 0.5f, 0.005f, 11));
+    btRigidBody* hand = world.add(new btBoxShape({0.2f, 0.1f, 0.2f}), {0, 0.4f, 0}, true);
+    double speed = 0.0;
+    for (int i = 0; i < 90; ++i) {
+        btTransform pose = hand->getWorldTransform();
+        const double y = 0.05 + 0.35 * std::abs(i - 45) / 45.0;  // 5 cm into the table
+        pose.setOrigin({0, static_cast<btScalar>(y), 0});
+        hand->setWorldTransform(pose);
+        world.step(1.0 / 60.0);
+        speed = std::max(speed, fastest(*cloth));
+    }
+    EXPECT_LT(speed, 0.75);  // the hand's is 0.47
+    EXPECT_LT(highest(*cloth), 0.1);
+}
+
+// A plate between two tables, with a sheet on either side of it: it cannot make room for both.
+TEST(PinchedCloth, ClothThatFindsNoRoomIsToldAndStaysCalm) {
+    constexpr int kNodes = 5;
+    std::vector<btScalar> places;
+    std::vector<int> corners;
+    for (const btScalar y : {-0.003f, 0.003f}) {
+        const int first = static_cast<int>(places.size()) / 3;
+        for (int i = 0; i < kNodes * kNodes; ++i) {
+            const btScalar x = real(i % kNodes), z = real(i / kNodes);
+            places.insert(places.end(), {0.1f * x - 0.2f, y, 0.1f * z - 0.2f});
+            if (i % kNodes == kNodes - 1 || i / kNodes == kNodes - 1) continue;
+            const int a = first + i, b = a + 1, c = a + kNodes, d = c + 1;
+            corners.insert(corners.end(), {a, c, b, b, c, d});
+        }
+    }
+    btGnnSoftBodySolver solver(quasi_newton());
+    World world(&solver);
+    btSoftBody* cloth = world.add(btSoftBodyHelpers::CreateFromTriMesh(
+        world.info(), places.data(), corners.data(), static_cast<int>(corners.size()) / 3, false));
+    world.add(new btBoxShape({2, 0.5f, 2}), {0, -0.505f, 0});
+    world.add(new btBoxShape({2, 0.5f, 2}), {0, 0.505f, 0});
+    btRigidBody* plate = world.add(new btBoxShape({0.15f, 0.001f, 0.15f}), {0, 0, 0}, true);
+    double speed = 0.0;
+    for (int i = 0; i < 30; ++i) {
+        btTransform pose = plate->getWorldTransform();
+        pose.setOrigin({0.002f * real(i), 0, 0});
+        plate->setWorldTransform(pose);
+        world.step(1.0 / 60.0);
+        speed = std::max(speed, fastest(*cloth));
+    }
+    EXPECT_LT(speed, 0.5);
+    EXPECT_NE(messages(solver).find("leave it no room"), std::string::npos) << messages(solver);
+}
+
+// After Bullet's SoftDemo, Init_Cloth.
+TEST(PinchedCloth, BodiesThatPileUpInASheetStayInIt) {
+    btGnnSoftBodySolver solver(
+        [](const Garment& garment) { return std::make_unique<ClothStepper>(garment); });
+    World world(&solver);
+    btSoftBody* cloth = sheet(world, 8, 0, 25, 1 + 2 + 4 + 8);
+    cloth->getCollisionShape()->setMargin(0.5);
+    btSoftBody::Material* material = cloth->appendMaterial();
+    material->m_kLST = 0.4f;
+    cloth->generateBendingConstraints(2, material);
+    cloth->setTotalMass(150);
+    world.add(cloth);
+    std::vector<btRigidBody*> bodies;
+    for (int i = 0; i < 5; ++i) {
+        btCollisionShape* shape = new btBoxShape({1, 1, 1});
+        if (i % 3 == 1) shape = new btCylinderShape({0.75f, 0.75f, 0.75f});
+        if (i % 3 == 2) shape = new btBoxShape({1.5f, 0.5f, 0.5f});
+        bodies.push_back(world.add(shape, {0, static_cast<btScalar>(2 + 6 * i), 0}, false, 10));
+    }
+    double speed = 0.0;
+    for (int i = 1; i <= 300; ++i) {
+        world.step(1.0 / 60.0);
+        for (const btRigidBody* body : bodies)
+            speed = std::max(speed, static_cast<double>(body->getLinearVelocity().length()));
+    }
+    EXPECT_LT(speed, 36.0);  // a fall of 65 m: from 26 m into the sheet that hangs through
+    for (const btRigidBody* body : bodies)
+        EXPECT_LT(body->getWorldTransform().getOrigin().length(), 30.0f);
+}
+
+// The reports' cases: far off a free corner, and along a free edge.
+TEST(AnchoredBodies, ABodyBesideAFreeCornerSwings) {
+    for (const btVector3& away : {btVector3(-0.3f, 0, 0), btVector3(0, 0, 0.3f),
+                                  btVector3(0, -0.3f, 0), btVector3(-0.2f, 0.1f, 0.2f)}) {
+        btGnnSoftBodySolver solver(quasi_newton());
+        World world(&solver);
+        btSoftBody* cloth = world.add(sheet(world, 0.4f, 1, 9, 1 + 2 + 8));
+        btRigidBody* ball =
+            world.add(new btSphereShape(0.1f), cloth->m_nodes[72].m_x + away, false, 5);
+        cloth->appendAnchor(72, ball, true);
+        double speed = 0.0;
+        for (int i = 0; i < 300; ++i) {
+            world.step(1.0 / 60.0);
+            speed = std::max(speed, static_cast<double>(ball->getLinearVelocity().length()));
+        }
+        EXPECT_LT(speed, 8.0);  // that of a fall of 3 m
+        EXPECT_GT(ball->getWorldTransform().getOrigin().y(), -2.0f);
+    }
+}
+
+TEST(AnchoredBodies, ARodAlongAFreeEdgeSwings) {
+    for (const btScalar mass : {0.05f, 0.5f, 5.0f, 50.0f})
+        for (const btScalar off : {0.0f, 0.1f, 0.3f}) {
+            SCOPED_TRACE(std::to_string(mass) + " kg, " + std::to_string(off) + " m");
+            btGnnSoftBodySolver solver(quasi_newton());
+            World world(&solver);
+            btSoftBody* cloth = world.add(sheet(world, 0.4f, 1, 9, 1 + 2));
+            btRigidBody* rod =
+                world.add(new btBoxShape({0.4f, 0.02f, 0.02f}), {0, 1, 0.4f + off}, false, mass);
+            for (int k = 72; k < 81; ++k) cloth->appendAnchor(k, rod, true);
+            double speed = 0.0;
+            for (int i = 0; i < 300; ++i) {
+                world.step(1.0 / 60.0);
+                speed = std::max(speed, static_cast<double>(rod->getLinearVelocity().length()));
+            }
+            EXPECT_LT(speed, 12.0);
+            EXPECT_LT(highest(*cloth), 2.0);
+        }
+}
+
+// Soft cotton, and a body that it cannot hold.
+TEST(AnchoredBodies, AnAnchorBeyondTheClothsReachIsTold) {
+    btGnnSoftBodySolver solver(quasi_newton());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 5, 1 + 2));
+    btRigidBody* post = world.add(new btBoxShape({0.1f, 0.1f, 0.1f}), {0, 0, 3.0f}, true);
+    cloth->appendAnchor(22, post, btVector3(0, 0, 0), true);
+    world.step(1.0 / 60.0, 10);
+    EXPECT_NE(messages(solver).find("node 22"), std::string::npos) << messages(solver);
+    EXPECT_NE(messages(solver).find("farther away than the cloth reaches"), std::string::npos);
+}
