@@ -23,11 +23,38 @@ bool wanted(const BulletScenesOptions& options, const std::string& name) {
     return false;
 }
 
-/// All solvers on one scene at one rate.
-std::vector<SceneResult> run_rate(const BulletScenesOptions& options, const SceneRecipe& recipe,
-                                  int rate, const SceneSolvers& solvers, Progress& line) {
+std::vector<StepPlan> plans(const BulletScenesOptions& options) {
+    std::vector<StepPlan> all;
+    for (const std::string& kind : options.steps) {
+        StepPlan plan;
+        plan.random = kind == "random";
+        if (plan.random) all.push_back(plan);
+        for (int rate : options.rates) {
+            plan.rate = rate;
+            if (!plan.random) all.push_back(plan);
+        }
+    }
+    return all;
+}
+
+std::string plan_name(const StepPlan& plan) {
+    return plan.random ? "random" : std::to_string(plan.rate);
+}
+
+/// How many times as long as Bullet's solver each one took, if that is among them.
+void compare_times(std::vector<SceneResult>& results) {
+    for (const SceneResult& bullet : results)
+        if (bullet.row.solver == "bullet")
+            for (SceneResult& result : results)
+                result.row.times_bullet = result.row.ms_mean / bullet.row.ms_mean;
+}
+
+/// All solvers on one scene with the same steps.
+std::vector<SceneResult> run_plan(const BulletScenesOptions& options, const SceneRecipe& recipe,
+                                  const StepPlan& plan, const SceneSolvers& solvers,
+                                  Progress& line) {
     SceneRunSettings settings;
-    settings.rate = rate;
+    settings.steps = plan;
     settings.seconds = options.seconds;
     const auto run = [&](const std::string& solver) {
         settings.solver = solver;
@@ -47,18 +74,21 @@ std::vector<SceneResult> run_rate(const BulletScenesOptions& options, const Scen
             result.row.rest_energy_mm = energy_distance_mm(result.energy, reference.energy);
         }
         result.row.momentum_error = momentum_error(recipe, settings, solvers);
-        std::printf("%s\n", scene_row_text(result.row).c_str());
-        for (const std::string& message : result.messages) std::printf("  %s\n", message.c_str());
-        std::fflush(stdout);
         results.push_back(std::move(result));
     }
+    compare_times(results);
+    for (const SceneResult& result : results) {
+        std::printf("%s\n", scene_row_text(result.row).c_str());
+        for (const std::string& message : result.messages) std::printf("  %s\n", message.c_str());
+    }
+    std::fflush(stdout);
     return results;
 }
 
 void run(const BulletScenesOptions& options) {
     if (options.list) {
         for (const SceneRecipe& recipe : sceneRecipes())
-            std::printf("%-10s %s\n", recipe.name, recipe.sentence);
+            std::printf("%-16s %s\n", recipe.name, recipe.sentence);
         return;
     }
     const SceneSolvers solvers(options.weights);
@@ -69,12 +99,13 @@ void run(const BulletScenesOptions& options) {
     std::printf("%s\n", scene_row_heading().c_str());
     for (const SceneRecipe& recipe : sceneRecipes()) {
         if (!wanted(options, recipe.name)) continue;
-        for (int rate : options.rates) {
-            const auto results = run_rate(options, recipe, rate, solvers, line);
+        const std::vector<StepPlan> wanted_plans = plans(options);
+        for (const StepPlan& plan : wanted_plans) {
+            const auto results = run_plan(options, recipe, plan, solvers, line);
             for (const SceneResult& result : results) rows.push_back(result.row);
             write_scene_report(options.out + "/bullet_scenes.json", rows);
             const std::string film = options.out + "/" + recipe.name +
-                                     (options.rates.size() > 1 ? "_" + std::to_string(rate) : "") +
+                                     (wanted_plans.size() > 1 ? "_" + plan_name(plan) : "") +
                                      ".mp4";
             make_scene_film(recipe, results, kPicturesPerSecond, film, [&](int done, int all) {
                 line.update(done, all, std::string(recipe.name) + ", video");

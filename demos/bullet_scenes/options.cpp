@@ -17,6 +17,24 @@ std::vector<int> numbers(const std::vector<std::string>& texts) {
     return rates;
 }
 
+/// The groups "small" and "demos" become the names of their scenes.
+std::vector<std::string> without_groups(const std::vector<std::string>& names) {
+    std::vector<std::string> scenes;
+    for (const std::string& name : names)
+        if (name == "small" || name == "demos")
+            for (const SceneRecipe& recipe : name == "small" ? smallScenes() : bulletsDemos())
+                scenes.push_back(recipe.name);
+        else
+            scenes.push_back(name);
+    return scenes;
+}
+
+void check_steps(const std::vector<std::string>& kinds) {
+    for (const std::string& kind : kinds)
+        if (kind != "even" && kind != "random")
+            throw UsageError("--steps " + kind + " is unknown; choose of even, random");
+}
+
 void check_scenes(const std::vector<std::string>& names) {
     std::vector<std::string> known;
     for (const SceneRecipe& recipe : sceneRecipes()) known.push_back(recipe.name);
@@ -37,10 +55,14 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
         "bullet_scenes");
     set_up(app);
     app.add_flag("--list", options.list, "name the scenes");
-    add_list(app, "--scene", options.scenes, "only these");
+    add_list(app, "--scene", options.scenes,
+             "only these; small: those of our own, demos: those of\nBullet's SoftDemo and "
+             "SimpleCloth");
     add_list(app, "--solvers", options.solvers,
              "bullet, quasi-newton-K, or a network NAME[+K];\ndefault bullet,small");
-    add_list(app, "--rates", rates, "steps per second, 10 to 1000, default 60");
+    add_list(app, "--rates", rates, "even steps per second, 10 to 1000, default 60");
+    add_list(app, "--steps", options.steps,
+             "even, random (of 1/240 to 1/30 s, the same in all runs);\ndefault even");
     add_whole_number(app, "--seconds", options.seconds, 1, 600, "of each run, default 10");
     app.add_option("--reference", options.reference,
                    "solver whose last shape is right, default quasi-newton-30;\nor none")
@@ -54,6 +76,8 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
     parse(app, arguments);
     options.videos = !no_videos;
     if (!rates.empty()) options.rates = numbers(rates);
+    check_steps(options.steps);
+    options.scenes = without_groups(options.scenes);
     check_scenes(options.scenes);
     return options;
 }

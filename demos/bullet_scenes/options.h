@@ -8,8 +8,9 @@ namespace cloth {
 struct BulletScenesOptions {
     std::vector<std::string> scenes;  ///< empty: all
     std::vector<std::string> solvers = {"bullet", "small"};
-    std::vector<int> rates = {60};  ///< (Hz)
-    int seconds = 10;               ///< 1 to 600
+    std::vector<int> rates = {60};              ///< of even steps (Hz)
+    std::vector<std::string> steps = {"even"};  ///< of even and random
+    int seconds = 10;                           ///< 1 to 600
     bool list = false;
     bool videos = true;
     std::string reference = "quasi-newton-30";  ///< whose last shape is right

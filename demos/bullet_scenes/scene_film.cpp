@@ -29,10 +29,20 @@ SceneMesh surface(const TriMesh& mesh, Rgb colour, bool two_sided) {
     return drawn;
 }
 
+/// The floor with its grid is at height 0: a scene whose ground is lower has one of its own.
+bool isOnFloor(const ScenePicture& picture) {
+    constexpr double kBelow = -1.0;  // m
+    return std::none_of(picture.rigid.begin(), picture.rigid.end(), [](const TriMesh& mesh) {
+        return mesh.vertices.rows() > 0 && mesh.vertices.col(1).minCoeff() < kBelow;
+    });
+}
+
 std::string caption(const SceneRow& row) {
     char text[160];
-    std::snprintf(text, sizeof text, "%s\n%.1f ms per step of 1/%d s", row.solver.c_str(),
-                  row.ms_median, row.rate_hz);
+    const std::string length =
+        row.rate_hz > 0 ? "of 1/" + std::to_string(row.rate_hz) + " s" : "of random length";
+    std::snprintf(text, sizeof text, "%s\n%.1f ms per step %s", row.solver.c_str(), row.ms_median,
+                  length.c_str());
     return text;
 }
 
@@ -47,6 +57,7 @@ Image panel(const SceneRecipe& recipe, const SceneResult& run, size_t frame, Rgb
             scene.meshes.push_back(surface(mesh, kRigid, false));
         for (const TriMesh& mesh : picture.others)
             scene.meshes.push_back(surface(mesh, kOther, true));
+        scene.ground.visible = isOnFloor(picture);
         for (const TriMesh& mesh : picture.cloth)
             scene.meshes.push_back(surface(mesh, colour, true));
     }

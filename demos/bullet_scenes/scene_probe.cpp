@@ -21,7 +21,7 @@ bool isNear(const btSoftBody& body) {
     return true;
 }
 
-bool mayTouch(const btSoftBody& cloth, const btRigidBody& body) {
+bool mayTouch(const btSoftBody& cloth, const btCollisionObject& body) {
     const auto& disabled = cloth.m_collisionDisabledObjects;
     return disabled.findLinearSearch(&body) == disabled.size();
 }
@@ -61,7 +61,7 @@ TriMesh surfaceOf(const ShapePart& part, const Pose& pose) {
 
 }  // namespace
 
-SceneProbe::Solid& SceneProbe::solidOf(const btRigidBody& body) {
+SceneProbe::Solid& SceneProbe::solidOf(const btCollisionObject& body) {
     Solid& solid = m_solids[&body];
     if (solid.parts.empty()) {
         solid.parts = partsOfShape(*body.getCollisionShape());
@@ -83,7 +83,7 @@ bool SceneProbe::finite() const {
 double SceneProbe::deepest() {
     constexpr double kReach = 0.2;  // m
     double depth = 0.0;
-    for (const auto& body : m_scene.rigid()) {
+    for (const btCollisionObject* body : m_scene.solids()) {
         const Solid& solid = solidOf(*body);
         const Pose inverse = toPose(body->getWorldTransform()).inverse();
         for (const btSoftBody* cloth : m_scene.cloth())
@@ -96,6 +96,34 @@ double SceneProbe::deepest() {
             }
     }
     return depth;
+}
+
+std::vector<double> SceneProbe::stretches() const {
+    std::vector<double> all;
+    for (const btSoftBody* cloth : m_scene.cloth())
+        for (int l = 0; l < cloth->m_links.size(); ++l) {
+            const btSoftBody::Link& link = cloth->m_links[l];
+            if (link.m_bbending || !(link.m_rl > 0)) continue;
+            all.push_back(static_cast<double>(link.m_n[0]->m_x.distance(link.m_n[1]->m_x)) /
+                          static_cast<double>(link.m_rl));
+        }
+    return all;
+}
+
+double SceneProbe::fastestNode() const {
+    btScalar fastest = 0;
+    for (const auto* bodies : {&m_scene.cloth(), &m_scene.others()})
+        for (const btSoftBody* body : *bodies)
+            for (int i = 0; i < body->m_nodes.size(); ++i)
+                fastest = std::max(fastest, body->m_nodes[i].m_v.length());
+    return static_cast<double>(fastest);
+}
+
+double SceneProbe::fastestBody() const {
+    btScalar fastest = 0;
+    for (const auto& body : m_scene.rigid())
+        fastest = std::max(fastest, body->getLinearVelocity().length());
+    return static_cast<double>(fastest);
 }
 
 Vec3 SceneProbe::momentum() const {
@@ -116,9 +144,15 @@ std::vector<Points> SceneProbe::cloth() const {
     return all;
 }
 
+std::vector<Points> SceneProbe::others() const {
+    std::vector<Points> all;
+    for (const btSoftBody* body : m_scene.others()) all.push_back(nodePositions(*body));
+    return all;
+}
+
 ScenePicture SceneProbe::picture() {
     ScenePicture picture;
-    for (const auto& body : m_scene.rigid()) {
+    for (const btCollisionObject* body : m_scene.solids()) {
         const Pose pose = toPose(body->getWorldTransform());
         for (const ShapePart& part : solidOf(*body).parts)
             if (part.shape != ObstacleShape::plane) picture.rigid.push_back(surfaceOf(part, pose));

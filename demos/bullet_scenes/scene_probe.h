@@ -15,11 +15,17 @@ class SceneProbe {
 
     /// Whether all nodes and rigid bodies have finite positions within 1 km.
     bool finite() const;
-    /// Depth (m) of the cloth node that is deepest inside a rigid body it may touch; 0: none.
+    /// Depth (m) of the cloth node that is deepest inside a solid it may touch; 0: none.
     double deepest();
+    /// Length over rest length of every link of cloth that is no bending link.
+    std::vector<double> stretches() const;
+    /// Of all soft bodies; of all rigid bodies (m/s).
+    double fastestNode() const;
+    double fastestBody() const;
     /// Of cloth and dynamic bodies (kg m/s).
     Vec3 momentum() const;
     std::vector<Points> cloth() const;
+    std::vector<Points> others() const;
     ScenePicture picture();
 
  private:
@@ -27,10 +33,10 @@ class SceneProbe {
         std::vector<ShapePart> parts;
         std::vector<PartDistance> distances;
     };
-    Solid& solidOf(const btRigidBody& body);
+    Solid& solidOf(const btCollisionObject& body);
 
     const SceneWorld& m_scene;
-    std::map<const btRigidBody*, Solid> m_solids;
+    std::map<const btCollisionObject*, Solid> m_solids;
 };
 
 }  // namespace cloth

@@ -30,13 +30,23 @@ StepperFactory network(const std::string& name, const std::string& folder) {
 
 }  // namespace
 
-std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name) const {
+btGnnSolverSettings defaults_of(const SceneRecipe& recipe) {
+    btGnnSolverSettings settings;
+    if (isBulletsDemo(recipe)) return settings;
+    settings.fabric = Fabric::soft_cotton();
+    settings.friction = btGnnFriction::coulomb;
+    return settings;
+}
+
+std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name,
+                                                        const btGnnSolverSettings& settings) const {
     if (name == "bullet") return nullptr;
     const std::string prefix = "quasi-newton-";
     if (name.rfind(prefix, 0) == 0)
         return std::make_unique<btGnnSoftBodySolver>(
-            quasi_newton(whole_number("solver " + name, name.substr(prefix.size()), 1, 1000)));
-    return std::make_unique<btGnnSoftBodySolver>(network(name, m_weights));
+            quasi_newton(whole_number("solver " + name, name.substr(prefix.size()), 1, 1000)),
+            settings);
+    return std::make_unique<btGnnSoftBodySolver>(network(name, m_weights), settings);
 }
 
 }  // namespace cloth

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
+#include "demos/bullet_scenes/worlds/scenes.h"
 
 namespace cloth {
 
@@ -15,10 +16,15 @@ class SceneSolvers {
     explicit SceneSolvers(std::string weights = "") : m_weights(std::move(weights)) {}
 
     /// A solver for one world. @throws UsageError or LoadError naming what is wrong
-    std::unique_ptr<btGnnSoftBodySolver> make(const std::string& name) const;
+    std::unique_ptr<btGnnSoftBodySolver> make(const std::string& name,
+                                              const btGnnSolverSettings& settings = {}) const;
 
  private:
     std::string m_weights;
 };
+
+/// Bullet's demos run with the solver's defaults: as their bodies say. The small scenes are of soft
+/// cotton, which the networks know, with Coulomb's friction.
+btGnnSolverSettings defaults_of(const SceneRecipe& recipe);
 
 }  // namespace cloth

@@ -44,7 +44,15 @@ std::vector<SceneRecipe> hangingScenes() {
     const btVector3 eye(1.4f, 1.9f, 2.8f), middle(0, 1.0f, 0);
     return {
         {"hanging", "a sheet, pinned at two corners", hanging, true, nullptr, eye, middle},
-        {"attached", "a sheet, anchored to a box that moves", attached, true, nullptr, eye, middle},
-        {"flag", "a flag in the wind", flag, false, nullptr, {0.6f, 1.6f, 2.9f}, {0, 1.2f, 0}},
+        {"attached", "a sheet, anchored to a box that moves", attached, true, nullptr, eye, middle,
+         OutsideWork::always},
+        {"flag",
+         "a flag in the wind",
+         flag,
+         false,
+         nullptr,
+         {0.6f, 1.6f, 2.9f},
+         {0, 1.2f, 0},
+         OutsideWork::always},
     };
 }

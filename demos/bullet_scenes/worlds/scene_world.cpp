@@ -1,5 +1,7 @@
 #include "scene_world.h"
 
+#include <algorithm>
+
 SceneWorld::SceneWorld(btSoftBodySolver* solver)
     : m_dispatcher(&m_config),
       m_world(&m_dispatcher, &m_broadphase, &m_rigidSolver, &m_config, solver) {
@@ -16,6 +18,14 @@ SceneWorld::SceneWorld(btSoftBodySolver* solver)
 SceneWorld::~SceneWorld() {
     for (auto& body : m_soft) m_world.removeSoftBody(body.get());
     for (auto& body : m_rigid) m_world.removeRigidBody(body.get());
+    for (auto& object : m_objects) m_world.removeCollisionObject(object.get());
+}
+
+void SceneWorld::setUpLikeBulletsDemos() {
+    m_world.setGravity({0, -10, 0});
+    info().m_gravity = {0, -10, 0};
+    info().m_sparsesdf.setDefaultVoxelsz(0.25f);
+    info().m_sparsesdf.Reset();
 }
 
 void SceneWorld::step(btScalar h) {
@@ -27,7 +37,7 @@ void SceneWorld::step(btScalar h) {
 
 btRigidBody* SceneWorld::addRigid(btCollisionShape* shape, const btVector3& position, btScalar mass,
                                   bool kinematic) {
-    m_shapes.emplace_back(shape);
+    keepShape(shape);
     btVector3 inertia(0, 0, 0);
     if (mass > 0) shape->calculateLocalInertia(mass, inertia);
     auto body = std::make_unique<btRigidBody>(mass, nullptr, shape, inertia);
@@ -42,6 +52,29 @@ btRigidBody* SceneWorld::addRigid(btCollisionShape* shape, const btVector3& posi
     return m_rigid.back().get();
 }
 
+btCollisionObject* SceneWorld::addObject(btCollisionShape* shape, const btVector3& position) {
+    auto object = std::make_unique<btCollisionObject>();
+    object->setCollisionShape(keepShape(shape));
+    object->setWorldTransform(btTransform(btQuaternion::getIdentity(), position));
+    object->setInterpolationWorldTransform(object->getWorldTransform());
+    m_world.addCollisionObject(object.get());
+    m_objects.push_back(std::move(object));
+    return m_objects.back().get();
+}
+
+btCollisionShape* SceneWorld::keepShape(btCollisionShape* shape) {
+    const auto same = [&](const auto& kept) { return kept.get() == shape; };
+    if (std::none_of(m_shapes.begin(), m_shapes.end(), same)) m_shapes.emplace_back(shape);
+    return shape;
+}
+
+std::vector<const btCollisionObject*> SceneWorld::solids() const {
+    std::vector<const btCollisionObject*> all;
+    for (const auto& body : m_rigid) all.push_back(body.get());
+    for (const auto& object : m_objects) all.push_back(object.get());
+    return all;
+}
+
 btSoftBody* SceneWorld::addSoft(btSoftBody* body) {
     m_soft.emplace_back(body);
     m_others.push_back(body);
@@ -49,10 +82,15 @@ btSoftBody* SceneWorld::addSoft(btSoftBody* body) {
     return body;
 }
 
-btSoftBody* SceneWorld::addCloth(btSoftBody* cloth, btScalar mass) {
+btSoftBody* SceneWorld::addClothAsItIs(btSoftBody* cloth) {
     addSoft(cloth);
     m_others.pop_back();
     m_cloth.push_back(cloth);
+    return cloth;
+}
+
+btSoftBody* SceneWorld::addCloth(btSoftBody* cloth, btScalar mass) {
+    addClothAsItIs(cloth);
     cloth->setTotalMass(mass);
     cloth->getCollisionShape()->setMargin(0.01f);
     cloth->m_cfg.piterations = 10;
@@ -79,6 +117,8 @@ btTriangleMesh* SceneWorld::newTriangles() {
 void SceneWorld::closeSystem() {
     m_world.setGravity({0, 0, 0});
     info().m_gravity.setZero();
+    for (auto& object : m_objects) m_world.removeCollisionObject(object.get());
+    m_objects.clear();
     for (auto& body : m_rigid) {
         body->setGravity({0, 0, 0});
         if (body->isStaticOrKinematicObject()) m_world.removeRigidBody(body.get());

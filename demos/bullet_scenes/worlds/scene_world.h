@@ -28,11 +28,21 @@ class SceneWorld {
     btSoftRigidDynamicsWorld& world() { return m_world; }
     btSoftBodyWorldInfo& info() { return m_world.getWorldInfo(); }
 
-    /// A body of the shape, which the world keeps. Mass 0 (kg): static, or kinematic.
+    /// Gravity and cells of Bullet's distance fields as Bullet's own demos have them.
+    void setUpLikeBulletsDemos();
+
+    /// A body of the shape, which the world keeps; bodies may share one. Mass 0 (kg): static, or
+    /// kinematic.
     btRigidBody* addRigid(btCollisionShape* shape, const btVector3& position, btScalar mass = 0,
                           bool kinematic = false);
+    /// A static object that is no rigid body, as the ground of Bullet's demos.
+    btCollisionObject* addObject(btCollisionShape* shape, const btVector3& position);
+    /// A shape for several bodies, or for a part of one.
+    btCollisionShape* keepShape(btCollisionShape* shape);
     /// Cloth as a careful user sets it up: fabric-like mass, small margin, ten iterations.
     btSoftBody* addCloth(btSoftBody* cloth, btScalar mass);
+    /// Cloth with the settings that it has.
+    btSoftBody* addClothAsItIs(btSoftBody* cloth);
     /// A soft body that is not cloth.
     btSoftBody* addSoft(btSoftBody* body);
     /// A level square of n x n nodes; `corners` are fixed as in btSoftBodyHelpers::CreatePatch().
@@ -40,6 +50,8 @@ class SceneWorld {
     btTriangleMesh* newTriangles();
 
     const std::vector<std::unique_ptr<btRigidBody>>& rigid() const { return m_rigid; }
+    /// Rigid bodies and objects.
+    std::vector<const btCollisionObject*> solids() const;
     const std::vector<btSoftBody*>& cloth() const { return m_cloth; }
     const std::vector<btSoftBody*>& others() const { return m_others; }
 
@@ -58,6 +70,7 @@ class SceneWorld {
     std::vector<std::unique_ptr<btTriangleMesh>> m_triangles;
     std::vector<std::unique_ptr<btCollisionShape>> m_shapes;
     std::vector<std::unique_ptr<btRigidBody>> m_rigid;
+    std::vector<std::unique_ptr<btCollisionObject>> m_objects;
     std::vector<std::unique_ptr<btSoftBody>> m_soft;
     std::vector<btSoftBody*> m_cloth, m_others;
     double m_time = 0.0;

@@ -4,7 +4,10 @@
 
 #include "scene_world.h"
 
-/// One scene: what the demos of Bullet's cloth show, each small enough to look at.
+/// What does work on a scene besides gravity: a driven body, or air.
+enum class OutsideWork { none, at_start, always };
+
+/// One scene.
 struct SceneRecipe {
     const char* name;
     const char* sentence;
@@ -13,11 +16,24 @@ struct SceneRecipe {
     void (*launch)(SceneWorld&);  ///< null, or starts the motion of the scene's closed twin, in
                                   ///< which dynamic bodies and cloth meet without gravity
     btVector3 eye, target;        ///< of the picture (m)
+    OutsideWork outside_work = OutsideWork::none;
 };
 
+/// All of them.
 const std::vector<SceneRecipe>& sceneRecipes();
 
-/// The parts of sceneRecipes().
+/// What cloth is for, each small enough to look at.
+const std::vector<SceneRecipe>& smallScenes();
+/// The scenes of Bullet's SoftDemo and SimpleCloth that have cloth: their sizes, masses, settings.
+const std::vector<SceneRecipe>& bulletsDemos();
+bool isBulletsDemo(const SceneRecipe& recipe);
+
+/// The parts of smallScenes().
 std::vector<SceneRecipe> hangingScenes();
 std::vector<SceneRecipe> restingScenes();
 std::vector<SceneRecipe> dynamicScenes();
+
+/// The parts of bulletsDemos().
+std::vector<SceneRecipe> demoSheets();
+std::vector<SceneRecipe> demoFlyers();
+std::vector<SceneRecipe> demoClosedBodies();

@@ -38,20 +38,35 @@ TEST(BulletScenesOptions, AreRead) {
     EXPECT_TRUE(parse_bullet_scenes_options({"--list"}).list);
 }
 
+TEST(BulletScenesOptions, StepsAndGroupsAreRead) {
+    EXPECT_EQ(parse_bullet_scenes_options({}).steps, std::vector<std::string>{"even"});
+    EXPECT_EQ(parse_bullet_scenes_options({"--steps", "even,random"}).steps,
+              (std::vector<std::string>{"even", "random"}));
+    const std::vector<std::string> scenes =
+        parse_bullet_scenes_options({"--scene", "demos,ball"}).scenes;
+    ASSERT_EQ(scenes.size(), bulletsDemos().size() + 1);
+    EXPECT_EQ(scenes.front(), bulletsDemos().front().name);
+    EXPECT_EQ(scenes.back(), "ball");
+}
+
 TEST(BulletScenesOptions, MistakesAreNamed) {
     EXPECT_NE(error_of({"--scene", "moon"}).find("hanging"), std::string::npos);
     EXPECT_NE(error_of({"--rates", "fast"}).find("--rates"), std::string::npos);
     EXPECT_NE(error_of({"--rates", "5"}).find("10"), std::string::npos);
     EXPECT_NE(error_of({"--out"}).find("--out"), std::string::npos);
+    EXPECT_NE(error_of({"--steps", "uneven"}).find("random"), std::string::npos);
     EXPECT_NE(error_of({"--nonsense", "1"}).find("--nonsense"), std::string::npos);
     EXPECT_NE(error_of({"--solvers", ","}).find("--solvers"), std::string::npos);
 }
 
 TEST(BulletScenes, HaveNamesOfTheirOwn) {
     std::set<std::string> names;
-    for (const SceneRecipe& recipe : sceneRecipes()) names.insert(recipe.name);
+    for (const SceneRecipe& recipe : smallScenes()) names.insert(recipe.name);
     EXPECT_EQ(names, (std::set<std::string>{"hanging", "attached", "flag", "sphere", "box_edge",
                                             "capsule", "mesh", "stack", "ball", "mixed"}));
+    for (const SceneRecipe& recipe : bulletsDemos()) names.insert(recipe.name);
+    EXPECT_EQ(names.size(), smallScenes().size() + bulletsDemos().size());
+    EXPECT_EQ(names.size(), sceneRecipes().size());
 }
 
 TEST(BulletScenes, RowsAreJsonWithNullsForWhatHasNoMeaning) {

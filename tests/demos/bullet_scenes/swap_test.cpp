@@ -45,7 +45,7 @@ struct SwapCase {
 /// while it flies free, and loses 0.3 %.
 std::vector<SwapCase> swap_cases() {
     std::vector<SwapCase> cases;
-    for (const SceneRecipe& recipe : sceneRecipes()) {
+    for (const SceneRecipe& recipe : smallScenes()) {
         cases.push_back({"quasi-newton-3", recipe, 0.001});
         cases.push_back({"small", recipe, 0.01});
     }
@@ -116,12 +116,12 @@ TEST_P(BulletsOwn, IsFiniteToo) {
     EXPECT_TRUE(run(GetParam(), "bullet", seconds).row.finite);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, BulletsOwn, testing::ValuesIn(sceneRecipes()), scene_name_of);
+INSTANTIATE_TEST_SUITE_P(Scenes, BulletsOwn, testing::ValuesIn(smallScenes()), scene_name_of);
 
 // Only these: on the sphere Bullet's folds are others, its sheet on the box slides off. Soft cotton
 // stretches by 3 % of its height under its weight, Bullet's links hardly do.
 TEST(SwapShapes, HangingAndDrapedSheetsComeToBulletsShape) {
-    for (const SceneRecipe& recipe : sceneRecipes()) {
+    for (const SceneRecipe& recipe : smallScenes()) {
         const std::string name = recipe.name;
         if (name != "hanging" && name != "attached" && name != "capsule") continue;
         const std::vector<Points> bullets = run(recipe, "bullet").last;
