@@ -8,13 +8,9 @@
 #include <cmath>
 
 #include "demos/bullet_scenes/scene_run.h"
+#include "tests/demos/bullet_scenes/print_scene.h"
 
 using namespace cloth;
-
-/// For the messages of failures.
-void PrintTo(const SceneRecipe& recipe, std::ostream* out) {
-    *out << recipe.name;
-}
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "demos/bullet_scenes/scene_run.h"
+#include "tests/demos/bullet_scenes/print_scene.h"
 
 using namespace cloth;
 
@@ -40,6 +41,10 @@ struct SwapCase {
     SceneRecipe recipe;
     double most_momentum;  ///< lost by the closed twin in a second
 };
+
+void PrintTo(const SwapCase& swap, std::ostream* out) {
+    *out << swap.recipe.name << ", " << swap.solver;
+}
 
 /// Three iterations conserve momentum as well as many do, by construction. The network does not
 /// while it flies free, and loses 0.3 %.
