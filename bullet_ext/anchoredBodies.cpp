@@ -14,8 +14,8 @@ namespace cloth {
 namespace {
 
 constexpr int kTrials = 8;
-constexpr double kClose = 5e-4;                 // m: by so little an anchor may be wrong
-constexpr double kFarthest = 0.3, kTurn = 0.6;  // m, rad: that a body is moved
+constexpr double kClose = 5e-4;                    // m: by so little an anchor may be wrong
+constexpr double kFarthestWay = 0.3, kTurn = 0.6;  // m, rad: that a body is moved
 
 Eigen::Matrix3d turnOf(const Vec3& way) {
     const double angle = way.norm();
@@ -191,7 +191,7 @@ void AnchoredBodies::limit(VectorX& u) const {
     for (size_t b = 0; b < m_bodies.size(); ++b) {
         const Vector6 way = wayOf(b, u);
         const double too_far =
-            std::max({1.0, way.head<3>().norm() / kFarthest, way.tail<3>().norm() / kTurn});
+            std::max({1.0, way.head<3>().norm() / kFarthestWay, way.tail<3>().norm() / kTurn});
         u.segment<6>(static_cast<Eigen::Index>(6 * b)) /= too_far;
     }
 }

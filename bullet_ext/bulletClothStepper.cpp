@@ -18,8 +18,8 @@ namespace cloth {
 
 namespace {
 
-constexpr double kFarthest = 1e6;    ///< floats are too coarse for cloth out there (m)
-constexpr double kExploded = 100.0;  ///< cloth that moved farther in one step has exploded (m)
+constexpr double kFarthestVertex = 1e6;  ///< floats are too coarse for cloth out there (m)
+constexpr double kExploded = 100.0;      ///< cloth that moved farther in one step has exploded (m)
 
 void validate(const BulletClothSettings& settings) {
     check_range("BulletClothSettings.substep_dt", settings.substep_dt, 1e-4, 0.1);
@@ -42,7 +42,7 @@ bool isUsable(const Garment& garment, const Boundary& boundary, double dt,
     const Points& push = boundary.accelerations;
     return std::isfinite(dt) && dt > 0.0 && state.x.rows() == count && state.v.rows() == count &&
            state.x.allFinite() && state.v.allFinite() &&
-           state.x.cwiseAbs().maxCoeff() < kFarthest && boundary.gravity.allFinite() &&
+           state.x.cwiseAbs().maxCoeff() < kFarthestVertex && boundary.gravity.allFinite() &&
            boundary.pin_targets.rows() == pins && boundary.pin_targets.allFinite() &&
            (push.size() == 0 || (push.rows() == count && push.allFinite())) &&
            std::all_of(boundary.obstacles.begin(), boundary.obstacles.end(), isFinite);

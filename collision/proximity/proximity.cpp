@@ -50,7 +50,7 @@ struct Answers {
 };
 
 /// What is remembered of a mesh between queries.
-struct KnownMesh {
+struct SearchedMesh {
     std::shared_ptr<const Faces> faces;  // held, so that the pointer stays a key
     std::shared_ptr<const std::vector<std::uint8_t>> limbs;
     int occurrence;  // the same faces may stand in one boundary several times
@@ -75,7 +75,7 @@ struct Nearest {
     PrimitiveHit on_primitive;
 };
 
-Answers& answers_for(KnownMesh& mesh, size_t count) {
+Answers& answers_for(SearchedMesh& mesh, size_t count) {
     auto& sets = mesh.answer_sets;
     auto found = std::find_if(sets.begin(), sets.end(),
                               [&](const Answers& set) { return set.of.size() == count; });
@@ -187,7 +187,7 @@ struct Proximity::Impl {
     std::shared_ptr<ObstacleTrees> given;  // or null
     ObstacleTrees own;
     long queries = 0;
-    std::vector<KnownMesh> meshes;
+    std::vector<SearchedMesh> meshes;
     std::vector<Target> targets;
     std::vector<ClosestFaceTree::Stack> stacks;  // one per thread
 
@@ -206,9 +206,9 @@ struct Proximity::Impl {
         return own;
     }
 
-    KnownMesh& known(const Obstacle& obstacle) {
+    SearchedMesh& known(const Obstacle& obstacle) {
         int occurrence = 0;
-        for (KnownMesh& mesh : meshes) {
+        for (SearchedMesh& mesh : meshes) {
             if (mesh.faces != obstacle.faces || mesh.limbs != obstacle.limbs) continue;
             if (mesh.last_seen == queries) {
                 ++occurrence;
@@ -229,7 +229,7 @@ struct Proximity::Impl {
         } else {
             target.surface = trees.surface(obstacle, end);
             if (!target.surface) return;
-            KnownMesh& mesh = known(obstacle);
+            SearchedMesh& mesh = known(obstacle);
             mesh.last_seen = queries;
             target.answers = &answers_for(mesh, count);
             target.answers->begin_query(target.surface);
@@ -244,7 +244,7 @@ struct Proximity::Impl {
         for (size_t i = 0; i < boundary.obstacles.size(); ++i)
             add_target(static_cast<int>(i), boundary.obstacles[i], trees_for(boundary), end, count);
         meshes.erase(std::remove_if(meshes.begin(), meshes.end(),
-                                    [&](const KnownMesh& mesh) {
+                                    [&](const SearchedMesh& mesh) {
                                         return queries - mesh.last_seen > forget_after;
                                     }),
                      meshes.end());

@@ -7,7 +7,7 @@
 
 namespace cloth {
 
-constexpr double opposite = -0.3;        // cosine of skins that face away from each other
+constexpr double opposite_skins = -0.3;  // cosine of skins that face away from each other
 constexpr double slab = -0.9;            // cosine of skins between which there is no ridge
 constexpr double far_away = 2e-2;        // m: skins further from a vertex do not count
 constexpr double drawn_weight = 1000.0;  // vertices that a vertex which was drawn counts for
@@ -34,7 +34,7 @@ bool PinchSides::is_pinched(const SurfaceSamples& samples, int sample, const Poi
     const SurfaceSamples::Corners at = samples.corners(sample);
     for (int k = 0; k < at.count(); ++k) {
         const int i = at.vertex[static_cast<size_t>(k)];
-        if (stands_near(contacts, i) && outward(contacts, i, x).dot(way_out) < opposite)
+        if (stands_near(contacts, i) && outward(contacts, i, x).dot(way_out) < opposite_skins)
             return true;
     }
     return false;
@@ -120,7 +120,7 @@ void PinchSides::add_planes(const SurfaceSamples& samples, const std::vector<int
         push.add(at.vertex, at.weight, normal, normal.dot(point) - allowed_depth);
         for (int k = 0; k < at.count(); ++k) {
             const int i = at.vertex[static_cast<size_t>(k)];
-            if (!stands_near(contacts, i) || outward(contacts, i, x).dot(normal) >= opposite)
+            if (!stands_near(contacts, i) || outward(contacts, i, x).dot(normal) >= opposite_skins)
                 continue;
             push.add({i, i, i}, {1.0, 0.0, 0.0}, normal, normal.dot(point) + distance);
             m_drawn[static_cast<size_t>(i)] = drawn[static_cast<size_t>(i)] = 1;

@@ -8,8 +8,7 @@
 namespace cloth {
 namespace {
 
-constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
-constexpr double touching = 1e-6;     // m: nearer than this is a touch
+constexpr double touching = 1e-6;  // m: nearer than this is a touch
 constexpr int max_advances = 200;  // elements that slide closely along each other count as touching
 
 /// Longest way (m) that two points of the elements can come nearer in the whole step; the mean of
@@ -55,19 +54,14 @@ const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points&
     m_motion = x1 - x0;
     m_faces.find(x0, m_motion, touching, threads);
     const auto& faces = m_faces.found();
-    const int count = static_cast<int>(faces.size());
-    const auto find_part = [&](int part, std::vector<SelfPair>& out) {
-        const int end = std::min(count, (part + 1) * faces_per_part);
-        for (int k = part * faces_per_part; k < end; ++k) {
-            const auto& [f, g] = faces[static_cast<size_t>(k)];
-            m_elements.visit(f, g, [&](const ElementPair& elements) {
-                SelfPair pair;
-                if (crosses(elements, x0, m_motion, pair)) out.push_back(pair);
-            });
-        }
+    const auto find = [&](int k, std::vector<SelfPair>& out) {
+        const auto& [f, g] = faces[static_cast<size_t>(k)];
+        m_elements.visit(f, g, [&](const ElementPair& elements) {
+            SelfPair pair;
+            if (crosses(elements, x0, m_motion, pair)) out.push_back(pair);
+        });
     };
-    gather_in_order((count + faces_per_part - 1) / faces_per_part, threads, m_parts, m_found,
-                    find_part);
+    gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
     return m_found;
 }
 

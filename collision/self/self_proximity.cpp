@@ -9,8 +9,6 @@
 namespace cloth {
 namespace {
 
-constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
-
 /// Least squared distance from the origin of the points offset + s shift, s in 0 to 1.
 double least_squared(const Vec3& offset, const Vec3& shift) {
     const double length = shift.squaredNorm();
@@ -60,22 +58,16 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
     m_faces.find(x, motion, reach, threads);
     m_bounds.update(m_elements, x, motion);
     const auto& faces = m_faces.found();
-    const int count = static_cast<int>(faces.size());
-    const auto find_part = [&](int part, std::vector<SelfPair>& out) {
-        const int end = std::min(count, (part + 1) * faces_per_part);
-        for (int k = part * faces_per_part; k < end; ++k) {
-            const auto [f, g] = faces[static_cast<size_t>(k)];
-            const double far = reach + m_bounds.approach(f, g);
-            m_elements.visit(f, g, [&](const ElementPair& elements) {
-                SelfPair pair;
-                if (m_bounds.may_be_near(elements, x, far) &&
-                    is_near(elements, x, motion, reach, pair))
-                    out.push_back(pair);
-            });
-        }
+    const auto find = [&](int k, std::vector<SelfPair>& out) {
+        const auto [f, g] = faces[static_cast<size_t>(k)];
+        const double far = reach + m_bounds.approach(f, g);
+        m_elements.visit(f, g, [&](const ElementPair& elements) {
+            SelfPair pair;
+            if (m_bounds.may_be_near(elements, x, far) && is_near(elements, x, motion, reach, pair))
+                out.push_back(pair);
+        });
     };
-    gather_in_order((count + faces_per_part - 1) / faces_per_part, threads, m_parts, m_pairs,
-                    find_part);
+    gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_pairs, find);
 }
 
 }  // namespace cloth

@@ -7,9 +7,8 @@
 
 namespace cloth {
 
-constexpr int faces_per_part = 2048;  // pairs of faces that a thread takes at once
-constexpr double in_plane = 1e-9;     // of an edge's length: flat cloth lies in the planes of its
-                                      // own faces up to rounding
+constexpr double in_plane = 1e-9;  // of an edge's length: flat cloth lies in the planes of its
+                                   // own faces up to rounding
 
 /// The edge must part the plane's sides, and pass the three edges of the face on the same side:
 /// signs of volumes (Segura and Feito 2001, "Algorithms to test ray-triangle intersection").
@@ -51,17 +50,12 @@ const std::vector<Tangle>& SelfTangles::find(const Points& x, int threads) {
     if (!x.allFinite()) return m_found;
     m_faces.find(x, m_still, 0.0, threads);
     const auto& faces = m_faces.found();
-    const int count = static_cast<int>(faces.size());
-    const auto find_part = [&](int part, std::vector<Tangle>& out) {
-        const int end = std::min(count, (part + 1) * faces_per_part);
-        for (int k = part * faces_per_part; k < end; ++k) {
-            const auto& [f, g] = faces[static_cast<size_t>(k)];
-            for (const int edge : m_elements.edges_of(f)) add(edge, g, x, out);
-            for (const int edge : m_elements.edges_of(g)) add(edge, f, x, out);
-        }
+    const auto find = [&](int k, std::vector<Tangle>& out) {
+        const auto& [f, g] = faces[static_cast<size_t>(k)];
+        for (const int edge : m_elements.edges_of(f)) add(edge, g, x, out);
+        for (const int edge : m_elements.edges_of(g)) add(edge, f, x, out);
     };
-    gather_in_order((count + faces_per_part - 1) / faces_per_part, threads, m_parts, m_found,
-                    find_part);
+    gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
     return m_found;
 }
 

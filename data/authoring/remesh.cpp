@@ -23,8 +23,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
 using VertexIndex = SurfaceMesh::Vertex_index;
 
-constexpr double kGoodAngle = 25.0;  // degrees at which the smoothing stops
-constexpr int kFirstRounds = 5;      // at least: the remesher leaves the borders wavy
+constexpr double kGoodGarmentAngle = 25.0;  // degrees at which the smoothing stops
+constexpr int kFirstRounds = 5;             // at least: the remesher leaves the borders wavy
 constexpr int kSmoothingRounds = 60;
 
 SurfaceMesh to_cgal(const TriMesh& mesh) {
@@ -190,7 +190,7 @@ TriMesh remesh(const TriMesh& surface, int target_vertices) {
     const std::vector<char> on_border = border_flags(mesh);
     TriMesh best;
     double best_angle = -1.0;
-    for (int round = 0; round < kSmoothingRounds && best_angle < kGoodAngle; ++round) {
+    for (int round = 0; round < kSmoothingRounds && best_angle < kGoodGarmentAngle; ++round) {
         smooth_inside(mesh, on_border, original);
         flip_edges(mesh);
         const double angle = smallest_angle(mesh);

@@ -23,7 +23,7 @@ using Delaunay =
     CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<VertexBase>>;
 using Vec2 = Eigen::Vector2d;
 
-constexpr double kGoodAngle = 26.0;  // degrees at which the smoothing stops
+constexpr double kGoodSheetAngle = 26.0;  // degrees at which the smoothing stops
 constexpr int kMaxRounds = 400;
 constexpr int kShakeEvery = 20;  // rounds: smoothing alone can come to rest at a bad triangle
 
@@ -152,7 +152,7 @@ void smooth(PointSet& set, const Faces& faces) {
 /// Moves the inner corners of bad triangles at random by up to a fifth of an edge.
 void shake(PointSet& set, const TriMesh& sheet, double h, Random& uniform) {
     for (Eigen::Index f = 0; f < sheet.faces.rows(); ++f) {
-        if (smallest_angle(sheet.vertices, sheet.faces.row(f)) >= kGoodAngle) continue;
+        if (smallest_angle(sheet.vertices, sheet.faces.row(f)) >= kGoodSheetAngle) continue;
         for (int c = 0; c < 3; ++c) {
             const size_t i = static_cast<size_t>(sheet.faces(f, c));
             const Vec2 move(uniform() - 0.5, uniform() - 0.5);
@@ -190,7 +190,7 @@ TriMesh make_sheet(double width, double depth, int target_vertices, unsigned see
     Random uniform(seed);
     PointSet set = scatter(width, depth, target_vertices, uniform);
     TriMesh sheet{lift(set.points, width, depth), triangulate(set.points)};
-    for (int round = 0; round < kMaxRounds && smallest_angle(sheet) < kGoodAngle; ++round) {
+    for (int round = 0; round < kMaxRounds && smallest_angle(sheet) < kGoodSheetAngle; ++round) {
         if (round % kShakeEvery == kShakeEvery - 1) shake(set, sheet, h, uniform);
         smooth(set, sheet.faces);
         sheet = {lift(set.points, width, depth), triangulate(set.points)};

@@ -12,6 +12,7 @@
 
 #include "tests/bullet_ext/metered_solver.h"
 #include "tests/bullet_ext/physical_steppers.h"
+#include "tests/sanitized.h"
 
 using namespace cloth;
 using namespace cloth::test;
@@ -214,14 +215,6 @@ Broken broken_by(const Outcome& outcome, const Bounds& bounds, bool balanced) {
             balanced ? std::max(outcome.made, outcome.left) / little : 0.0};
 }
 
-/// The sanitizers look for errors of memory, which a few worlds show; how rare a world is that breaks
-/// a bound is counted in optimised builds.
-#ifdef __SANITIZE_ADDRESS__
-constexpr int kShare = 10;
-#else
-constexpr int kShare = 1;
-#endif
-
 /// @param count of worlds, in an optimised build
 /// @param fixed time step that the stepper is made for (s), 0: any. Steps that look ahead are
 ///              balanced with the bodies as they are foreseen, which is not what is measured here
@@ -230,7 +223,7 @@ void check(unsigned first, int count, double seconds, const Bounds& bounds, cons
     const char* only = std::getenv("CLOTH_WORLD");  // for whoever looks into one world
     std::string rare;
     int rare_count = 0;
-    for (int k = 0; k < count / kShare; ++k) {
+    for (int k = 0; k < fewer_if_sanitized(count); ++k) {
         const unsigned number = first + static_cast<unsigned>(k);
         if (only && std::to_string(number) != only) continue;
         SCOPED_TRACE("world " + std::to_string(number));

@@ -8,6 +8,7 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/metered_solver.h"
 #include "tests/bullet_ext/physical_steppers.h"
+#include "tests/sanitized.h"
 
 using namespace cloth;
 using namespace cloth::test;
@@ -176,7 +177,7 @@ TEST(PinchedCloth, BodiesThatPileUpInASheetStayInIt) {
         bodies.push_back(world.add(shape, {0, static_cast<btScalar>(2 + 6 * i), 0}, false, 10));
     }
     double speed = 0.0;
-    for (int i = 1; i <= 300; ++i) {
+    for (int i = 0; i < fewer_if_sanitized(300); ++i) {
         world.step(1.0 / 60.0);
         for (const btRigidBody* body : bodies)
             speed = std::max(speed, static_cast<double>(body->getLinearVelocity().length()));
@@ -197,7 +198,7 @@ TEST(AnchoredBodies, ABodyBesideAFreeCornerSwings) {
             world.add(new btSphereShape(0.1f), cloth->m_nodes[72].m_x + away, false, 5);
         cloth->appendAnchor(72, ball, true);
         double speed = 0.0;
-        for (int i = 0; i < 300; ++i) {
+        for (int i = 0; i < fewer_if_sanitized(300); ++i) {
             world.step(1.0 / 60.0);
             speed = std::max(speed, static_cast<double>(ball->getLinearVelocity().length()));
         }
@@ -217,7 +218,7 @@ TEST(AnchoredBodies, ARodAlongAFreeEdgeSwings) {
                 world.add(new btBoxShape({0.4f, 0.02f, 0.02f}), {0, 1, 0.4f + off}, false, mass);
             for (int k = 72; k < 81; ++k) cloth->appendAnchor(k, rod, true);
             double speed = 0.0;
-            for (int i = 0; i < 300; ++i) {
+            for (int i = 0; i < fewer_if_sanitized(300); ++i) {
                 world.step(1.0 / 60.0);
                 speed = std::max(speed, static_cast<double>(rod->getLinearVelocity().length()));
             }

@@ -4,26 +4,26 @@
 
 namespace {
 
-constexpr int kNodes = 25;
+constexpr int kNodesAtRest = 25;
 
 void onSphere(SceneWorld& scene) {
     scene.addRigid(new btSphereShape(0.3f), {0, 0.5f, 0})->setFriction(1);
     scene.addRigid(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
-    scene.addSheet({0, 0.85f, 0}, 1, kNodes)->m_cfg.kDF = 1;
+    scene.addSheet({0, 0.85f, 0}, 1, kNodesAtRest)->m_cfg.kDF = 1;
 }
 
 /// Two fifths of the sheet hang over the edge.
 void onBoxEdge(SceneWorld& scene) {
     scene.addRigid(new btBoxShape({0.5f, 0.25f, 0.5f}), {0, 0.5f, 0})->setFriction(1);
     scene.addRigid(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
-    scene.addSheet({0.4f, 0.78f, 0}, 1, kNodes)->m_cfg.kDF = 1;
+    scene.addSheet({0.4f, 0.78f, 0}, 1, kNodesAtRest)->m_cfg.kDF = 1;
 }
 
 void onCapsule(SceneWorld& scene) {
     btRigidBody* capsule = scene.addRigid(new btCapsuleShapeX(0.15f, 0.7f), {0, 0.6f, 0});
     capsule->setFriction(1);
     scene.addRigid(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
-    scene.addSheet({0, 0.78f, 0}, 0.9f, kNodes)->m_cfg.kDF = 1;
+    scene.addSheet({0, 0.78f, 0}, 0.9f, kNodesAtRest)->m_cfg.kDF = 1;
 }
 
 /// A torus that lies on its side, as triangles.
@@ -48,7 +48,7 @@ void addTorus(SceneWorld& scene, const btVector3& centre) {
 void onMesh(SceneWorld& scene) {
     addTorus(scene, {0, 0.5f, 0});
     scene.addRigid(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
-    scene.addSheet({0, 0.65f, 0}, 0.9f, kNodes)->m_cfg.kDF = 1;
+    scene.addSheet({0, 0.65f, 0}, 0.9f, kNodesAtRest)->m_cfg.kDF = 1;
 }
 
 }  // namespace

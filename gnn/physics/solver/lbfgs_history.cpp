@@ -1,13 +1,8 @@
 #include "gnn/physics/solver/lbfgs_history.h"
 
+#include "gnn/physics/solver/dot.h"
+
 namespace cloth {
-namespace {
-
-double dot(const Points& a, const Points& b) {
-    return a.cwiseProduct(b).sum();
-}
-
-}  // namespace
 
 void LbfgsHistory::allocate(int capacity, Eigen::Index rows) {
     m_pairs.resize(static_cast<size_t>(capacity));

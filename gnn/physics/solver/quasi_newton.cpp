@@ -7,16 +7,13 @@
 #include <utility>
 
 #include "data/core/check_range.h"
+#include "gnn/physics/solver/dot.h"
 
 namespace cloth {
 namespace {
 
 constexpr double sufficient_decrease = 1e-4;  // of Armijo's rule
 constexpr int max_backtracks = 20;
-
-double dot(const Points& a, const Points& b) {
-    return a.cwiseProduct(b).sum();
-}
 
 /// The energies of the last iterations, and what became of them as a distance.
 class Gain {

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "gnn/physics/solver/dot.h"
+
 namespace cloth {
 namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
-
-double dot(const Points& a, const Points& b) {
-    return a.cwiseProduct(b).sum();
-}
 
 bool same_fabric(const Fabric& a, const Fabric& b) {
     return a.density == b.density && a.mu == b.mu && a.lambda == b.lambda;

@@ -60,6 +60,11 @@ struct SampledWay {
 SampledWay sample_way(const Obstacle& mesh, const Vec3& p0, const Vec3& p1) {
     constexpr int samples = 400;
     SampledWay way;
+    const Vec3 low = mesh.x0.colwise().minCoeff().cwiseMin(mesh.x1.colwise().minCoeff());
+    const Vec3 high = mesh.x0.colwise().maxCoeff().cwiseMax(mesh.x1.colwise().maxCoeff());
+    if ((p0.cwiseMax(p1).array() < low.array()).any() ||
+        (p0.cwiseMin(p1).array() > high.array()).any())
+        return way;  // far from all the way of the mesh
     Vec3 in = Vec3::Zero(), out = Vec3::Zero();
     bool inside = false, known = false;
     for (int k = 0; k <= samples; ++k) {
