@@ -2,8 +2,9 @@
 
 namespace cloth::test {
 
-/// The sanitizers make code ten times as slow. They look for errors of memory and arithmetic, which a
-/// few steps show as well as many; how cloth behaves in the long run is tested in optimised builds.
+/// The sanitizers make code ten times as slow. They look for errors of memory and arithmetic, which
+/// a few steps show as well as many; how cloth behaves in the long run is tested in optimised
+/// builds.
 #ifdef __SANITIZE_ADDRESS__
 constexpr bool is_sanitized = true;
 #else
