@@ -82,10 +82,7 @@ void TwoWayCoupling::collect(const ClothStep& step) {
 
 /// Nothing around the cloth can be pushed: what its stepper made from nothing is still taken away.
 void TwoWayCoupling::balanceAlone(const ClothStep& step) {
-    const auto count = static_cast<size_t>(step.to.x.rows());
-    m_holder.assign(count, nullptr);
-    m_held.assign(count, 0);
-    m_touches.solid.assign(count, -1);
+    forgetHolders(static_cast<size_t>(step.to.x.rows()));
     m_free = step.from.v;
     m_internal_known = false;
     bool pulled = false;
@@ -98,12 +95,16 @@ void TwoWayCoupling::balanceAlone(const ClothStep& step) {
     balanceEnergy(step);
 }
 
+void TwoWayCoupling::forgetHolders(size_t nodes) {
+    m_holder.assign(nodes, nullptr);
+    m_held.assign(nodes, 0);
+    m_touches.solid.assign(nodes, -1);
+}
+
 /// What each node touches at the end of the cloth step, and the dynamic body that holds it.
 void TwoWayCoupling::findHolders(const ClothStep& step) {
     const size_t count = static_cast<size_t>(step.to.x.rows());
-    m_holder.assign(count, nullptr);
-    m_held.assign(count, 0);
-    m_touches.solid.assign(count, -1);
+    forgetHolders(count);
     m_touches.place.resize(step.to.x.rows(), 3);
     m_distance.assign(count, std::numeric_limits<double>::infinity());
     const Points& x = step.to.x;

@@ -94,6 +94,7 @@ class TwoWayCoupling {
 
     void forgetAbsent(const std::vector<NearSolid>& near);
     void balanceAlone(const ClothStep& step);
+    void forgetHolders(size_t nodes);
     void findHolders(const ClothStep& step);
     void holdByAnchors();
     void findFreeVelocities(const ClothStep& step);

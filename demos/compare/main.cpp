@@ -1,6 +1,6 @@
 // compare: the same garment on the same moving body, by several solvers, side by side.
 // Every solver runs in a process of its own, so that its memory can be told and its failure harms
-// no other; what is done is kept in OUT/work, so that an interrupted run goes on where it stopped.
+// no other; what is done is kept in OUT/parts, so that an interrupted run goes on where it stopped.
 
 #include <omp.h>
 #include <spawn.h>
@@ -31,7 +31,7 @@ using nlohmann::json;
 namespace {
 
 std::string work_file(const CompareOptions& options, const std::string& name) {
-    return options.out + "/work/" + name;
+    return options.out + "/parts/" + name;
 }
 
 json read_json(const std::string& path) {
@@ -52,8 +52,8 @@ void prepare_work_folder(const CompareOptions& options) {
     const std::string path = work_file(options, "settings.json");
     std::error_code ignored;
     if (!std::filesystem::exists(path) || read_json(path) != settings)
-        std::filesystem::remove_all(options.out + "/work", ignored);
-    std::filesystem::create_directories(options.out + "/work");
+        std::filesystem::remove_all(options.out + "/parts", ignored);
+    std::filesystem::create_directories(options.out + "/parts");
     write_text_file(path, settings.dump(1));
 }
 

@@ -58,7 +58,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         ->type_name("DIR");
     app.add_option("--worker", options.worker)->group("");  // not in the help
     app.footer(
-        "A run that was interrupted goes on where it stopped; delete DIR/work to start "
+        "A run that was interrupted goes on where it stopped; delete DIR/parts to start "
         "afresh.");
     parse(app, arguments);
     check_garment_name(options.garment);

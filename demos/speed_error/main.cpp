@@ -72,7 +72,7 @@ void speed_error(const SpeedErrorOptions& options) {
     if (contest.solvers.empty())
         contest.solvers = default_solvers(networks_in(options.weights), torch);
     contest.relative_to = compared_with(options.relative_to, contest.solvers);
-    contest.work = options.out + "/work/" + build_commit();
+    contest.work = options.out + "/parts/" + build_commit();
 
     ordered_json head = head_json(cores, torch, contest.relative_to);
     std::vector<SolverRow> rows;

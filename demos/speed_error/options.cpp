@@ -42,7 +42,7 @@ const char* const explanations =
     "                       twice, less that before; freed memory was given back first.\n"
     "                       Libraries count for the solver that touched them first\n"
     "\n"
-    "References are kept in DIR/work for this commit; delete it after a change of the\n"
+    "References are kept in DIR/parts for this commit; delete it after a change of the\n"
     "physics. Results are written after each scene.";
 
 }  // namespace
