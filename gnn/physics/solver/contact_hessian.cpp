@@ -162,6 +162,41 @@ void ContactHessian::add_product(const Points& direction, Points& product) const
     }
 }
 
+void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& system) const {
+    using Row = AffineFields::Row;
+    using Vector = Eigen::Matrix<double, 3 * AffineFields::count, 1>;
+    // stiffness (f x n)(f x n)', f: how far each field moves the point
+    const auto add = [&](const Row& f, const Vec3& n, double stiffness) {
+        Vector motion;
+        for (int k = 0; k < AffineFields::count; ++k) motion.segment<3>(3 * k) = f[k] * n;
+        system.noalias() += stiffness * motion * motion.transpose();
+    };
+    const auto combined = [&](const auto& row, const auto& weight) {
+        Row f = Row::Zero();
+        for (size_t k = 0; k < weight.size(); ++k)
+            if (weight[k] != 0.0) f += weight[k] * fields.at(row[k]);
+        return f;
+    };
+    for (const Contact& contact : m_contacts)
+        if (contact.stiffness > 0.0) add(fields.at(contact.row), contact.normal, contact.stiffness);
+    for (const Ridge& ridge : m_ridges)
+        if (ridge.stiffness > 0.0)
+            add(combined(ridge.row, ridge.weight), ridge.normal, ridge.stiffness);
+    for (const SelfContact& contact : m_self_contacts)
+        if (contact.stiffness > 0.0)
+            add(combined(contact.row, contact.weight), contact.normal, contact.stiffness);
+    Eigen::Matrix<double, AffineFields::count, AffineFields::count> sliding =
+        Eigen::Matrix<double, AffineFields::count, AffineFields::count>::Zero();
+    for (const Slider& slider : m_sliders) {
+        const Row f = fields.at(slider.row);
+        sliding.noalias() += slider.stiffness * f * f.transpose();
+        add(f, slider.normal, -slider.stiffness);
+    }
+    for (int i = 0; i < AffineFields::count; ++i)
+        for (int j = 0; j < AffineFields::count; ++j)
+            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) += sliding(i, j);
+}
+
 void ContactHessian::limit_depth(Points& trial) const {
     for (const Contact& contact : m_contacts) {
         const double limit = std::max(contact.depth, 0.0) + depth_per_step;

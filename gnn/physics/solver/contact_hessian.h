@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "gnn/physics/energy/incremental_potential.h"
+#include "gnn/physics/solver/affine_fields.h"
 
 namespace cloth {
 
@@ -37,6 +38,9 @@ class ContactHessian {
 
     /// product += blocks * direction (free, n x 3).
     void add_product(const Points& direction, Points& product) const;
+
+    /// system += F' blocks F, F: fields of the free vertices.
+    void add_to(const AffineFields& fields, AffineFields::System& system) const;
 
     /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
     void limit_depth(Points& trial) const;

@@ -12,7 +12,7 @@ namespace cloth {
 /// When the iterations of a minimisation end.
 struct IterationLimits {
     int iterations =
-        10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 10 solves with P
+        10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 9 solves with P
     int least_iterations = 0;  ///< but not fewer than these, 0 to 10000
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
     double least_gain = 0.0;   ///< or when MinimiseReport::gain is below this (m), 0 to 1; 0: never
@@ -36,8 +36,9 @@ void check(const IterationLimits& limits, const std::string& owner);
 
 struct QuasiNewtonSettings : IterationLimits {
     int history = 8;  ///< pairs of the L-BFGS history, 0 to 50; 0: descent along -P^-1 g
-    int contact_cg_iterations = 10;  ///< iterations of a solve with P + contact blocks, 0 to 50; 0:
-                                     ///< contact stays out of the matrix
+    /// Iterations of a solve with P + contact blocks, 0 to 50; 0: contact stays out of the matrix.
+    /// Affine displacements of the garment are deflated from them.
+    int contact_cg_iterations = 7;
 
     QuasiNewtonSettings() = default;
     QuasiNewtonSettings(const IterationLimits& limits) : IterationLimits(limits) {}

@@ -59,6 +59,7 @@ QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
+    m_deflated = false;
     if (!same_fabric(m_fabric, garment.fabric())) m_factors.clear();
     m_fabric = garment.fabric();
     const auto kept = std::find_if(m_factors.begin(), m_factors.end(),
@@ -116,6 +117,13 @@ void QuasiNewtonMatrix::add_scaled(double scale, const Points& free, Points& all
         all.row(m_free[static_cast<size_t>(row)]) += scale * free.row(row);
 }
 
+void QuasiNewtonMatrix::deflate(const Points& x) {
+    gather(x, m_points);
+    const double dt = m_factors.front().dt;
+    m_affine.take(m_points, m_laplacian, m_fabric.longitudinal(), m_masses, 1.0 / (dt * dt));
+    m_deflated = true;
+}
+
 void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int iterations,
                               Points& out) const {
     m_residual = b;
@@ -124,15 +132,29 @@ void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int ite
         out = m_preconditioned;
         return;
     }
+    double power = dot(m_residual, m_preconditioned);
+    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
+    const bool deflated = m_deflated && m_affine.factorise(contacts);
+    if (deflated) {
+        m_affine.solve(b, out, m_product);
+        contacts.add_product(out, m_product);
+        m_residual -= m_product;
+        solve(m_residual, m_preconditioned);
+        power = dot(m_residual, m_preconditioned);
+    } else {
+        out.setZero(b.rows(), 3);
+    }
     m_direction = m_preconditioned;
     // P times the direction follows from the residuals, so that P itself is never multiplied.
     m_p_direction = m_residual;
-    double power = dot(m_residual, m_preconditioned);
-    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
-    out.setZero(b.rows(), 3);
     for (int k = 0; power > enough; ++k) {
         m_product = m_p_direction;
         contacts.add_product(m_direction, m_product);
+        if (deflated) {
+            m_affine.make_conjugate(m_product, m_direction, m_p_direction);
+            m_product = m_p_direction;
+            contacts.add_product(m_direction, m_product);
+        }
         const double step = power / dot(m_direction, m_product);
         out += step * m_direction;
         if (k + 1 >= iterations) break;

@@ -3,6 +3,7 @@
 #include <list>
 #include <vector>
 
+#include "gnn/physics/solver/affine_correction.h"
 #include "gnn/physics/solver/contact_hessian.h"
 #include "gnn/physics/solver/supernodal_cholesky.h"
 
@@ -44,9 +45,13 @@ class QuasiNewtonMatrix {
     /// out = P^-1 b (free).
     void solve(const Points& b, Points& out) const { m_factors.front().factor.solve(b, out); }
 
+    /// Until the next `prepare`, solves with contact blocks find the affine displacements of the
+    /// vertices at x (|V| x 3, m) directly.
+    void deflate(const Points& x);
+
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
-    /// preconditioned by P, each of which costs one solve with P. The blocks anticipate the step
-    /// P^-1 b.
+    /// preconditioned by P, each of which costs one solve with P; two more come before. The blocks
+    /// anticipate the step P^-1 b.
     void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
 
     const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
@@ -69,6 +74,9 @@ class QuasiNewtonMatrix {
     Fabric m_fabric;                          ///< of the factors
     std::list<Factor> m_factors;              ///< the one in use first
     int m_factorisations = 0;
+    bool m_deflated = false;
+    mutable AffineCorrection m_affine;
+    Points m_points;  ///< n x 3 (m)
     mutable Points m_residual, m_preconditioned, m_direction, m_product, m_p_direction;  ///< n x 3
 };
 

@@ -1,0 +1,50 @@
+#include "gnn/physics/solver/affine_correction.h"
+
+namespace cloth {
+
+void AffineCorrection::take(const Points& x, const Eigen::SparseMatrix<double>& laplacian,
+                            double stiffness, const VectorX& masses, double rate) {
+    m_fields.take(x);
+    const AffineFields::Columns& fields = m_fields.columns();
+    m_p_columns.noalias() = laplacian * fields;
+    m_p_columns *= stiffness;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        m_p_columns.row(i) += rate * masses[i] * fields.row(i);
+    m_p.noalias() = fields.transpose().lazyProduct(m_p_columns);
+    // a field that is zero has no part in any answer
+    for (int k = 0; k < AffineFields::count; ++k)
+        if (!(m_p(k, k) > 0.0)) m_p(k, k) = m_p(0, 0);
+}
+
+bool AffineCorrection::factorise(const ContactHessian& contacts) {
+    AffineFields::System system = AffineFields::System::Zero();
+    for (int i = 0; i < AffineFields::count; ++i)
+        for (int j = 0; j < AffineFields::count; ++j)
+            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) = m_p(i, j);
+    contacts.add_to(m_fields, system);
+    m_factor.compute(system);
+    return m_factor.info() == Eigen::Success && m_factor.isPositive();
+}
+
+AffineFields::Coefficients AffineCorrection::coefficients(
+    const AffineFields::Coefficients& moments) const {
+    using Vector = Eigen::Matrix<double, 3 * AffineFields::count, 1>;
+    const Vector right_side = Eigen::Map<const Vector>(moments.data());
+    const Vector answer = m_factor.solve(right_side);
+    return Eigen::Map<const AffineFields::Coefficients>(answer.data());
+}
+
+void AffineCorrection::solve(const Points& b, Points& x, Points& p_x) const {
+    const AffineFields::Coefficients c = coefficients(m_fields.moments(b));
+    x.noalias() = m_fields.columns().lazyProduct(c);
+    p_x.noalias() = m_p_columns.lazyProduct(c);
+}
+
+void AffineCorrection::make_conjugate(const Points& product, Points& direction,
+                                      Points& p_direction) const {
+    const AffineFields::Coefficients c = coefficients(m_fields.moments(product));
+    direction.noalias() -= m_fields.columns().lazyProduct(c);
+    p_direction.noalias() -= m_p_columns.lazyProduct(c);
+}
+
+}  // namespace cloth
