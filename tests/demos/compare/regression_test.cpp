@@ -20,9 +20,8 @@ namespace {
 const std::string metrics_file =
     std::string(CLOTH_SOURCE_DIR) + "/tests/demos/compare/tshirt_metrics.json";
 
-const std::vector<std::string> solver_names = {"bullet", "bullet-fine", "quasi-newton-3",
-                                               "small",  "small+3",     "baseline",
-                                               "fast",   "fast+0"};
+const std::vector<std::string> solver_names = {
+    "bullet", "bullet-fine", "quasi-newton-3", "small", "small+3", "baseline", "fast", "fast+0"};
 
 CompareOptions short_rollout() {
     CompareOptions options;
