@@ -59,7 +59,7 @@ std::vector<DataSet> data_sets() {
          "build/release/demos/compare --garment tshirt --motion 01_01 --frames 0"
          " --reference-frames 0 --no-video --out OUT --solvers "
          "bullet,bullet-fine,reference,quasi-newton-1,quasi-newton-3,quasi-newton-10,"
-         "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+10-bdf2,fast,small+0,fast+0",
+         "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+3,medium+3,fast,small+0,medium+0",
          "report.json",
          {},
          {}},

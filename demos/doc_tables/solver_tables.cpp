@@ -69,6 +69,9 @@ MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
                                           "small+10",
                                           "small",
                                           "small+10-bdf2",
+                                          "medium+0",
+                                          "medium+3",
+                                          "medium+10",
                                           "fast+0",
                                           "fast+3",
                                           "fast+10",
@@ -101,6 +104,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
         {"quasi-newton", "in general: holds every hard case, needs no network"},
         {"quasi-newton-bdf2", "cloth hangs free and swings"},
         {"small", "the learned solver: a network, then quasi-Newton iterations"},
+        {"small+3", "the same with three iterations and steps that are never cut: time is short"},
         {"reference", "off-line: each step is solved to convergence"}};
     MarkdownTable table;
     table.heading = {"solver",
