@@ -22,7 +22,7 @@ void AffineFields::take(const Points& x) {
     }
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance /
                                                               static_cast<double>(x.rows()));
-    const Vec3 variance = axes.eigenvalues();
+    const Vec3& variance = axes.eigenvalues();
     Eigen::Matrix3d scaled = Eigen::Matrix3d::Zero();
     for (int k = 0; k < 3; ++k)
         if (variance[k] > least_extent * least_extent * variance[2])
