@@ -50,8 +50,8 @@ class QuasiNewtonMatrix {
     void deflate(const Points& x);
 
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
-    /// preconditioned by P, each of which costs one solve with P; two more come before. The blocks
-    /// anticipate the step P^-1 b.
+    /// preconditioned by P. They cost as many solves with P, and one more after `deflate`. The
+    /// blocks anticipate the step P^-1 b.
     void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
 
     const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
