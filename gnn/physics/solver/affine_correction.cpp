@@ -18,9 +18,7 @@ void AffineCorrection::take(const Points& x, const Eigen::SparseMatrix<double>& 
 
 bool AffineCorrection::factorise(const ContactHessian& contacts) {
     AffineFields::System system = AffineFields::System::Zero();
-    for (int i = 0; i < AffineFields::count; ++i)
-        for (int j = 0; j < AffineFields::count; ++j)
-            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) = m_p(i, j);
+    AffineFields::add_isotropic(m_p, system);
     contacts.add_to(m_fields, system);
     m_factor.compute(system);
     return m_factor.info() == Eigen::Success && m_factor.isPositive();
@@ -28,9 +26,8 @@ bool AffineCorrection::factorise(const ContactHessian& contacts) {
 
 AffineFields::Coefficients AffineCorrection::coefficients(
     const AffineFields::Coefficients& moments) const {
-    using Vector = Eigen::Matrix<double, 3 * AffineFields::count, 1>;
-    const Vector right_side = Eigen::Map<const Vector>(moments.data());
-    const Vector answer = m_factor.solve(right_side);
+    using Vector = AffineFields::Vector;
+    const Vector answer = m_factor.solve(Vector(Eigen::Map<const Vector>(moments.data())));
     return Eigen::Map<const AffineFields::Coefficients>(answer.data());
 }
 

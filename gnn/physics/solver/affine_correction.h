@@ -32,8 +32,8 @@ class AffineCorrection {
     AffineFields::Coefficients coefficients(const AffineFields::Coefficients& moments) const;
 
     AffineFields m_fields;
-    AffineFields::Columns m_p_columns;                                    ///< P F
-    Eigen::Matrix<double, AffineFields::count, AffineFields::count> m_p;  ///< F' P F
+    AffineFields::Columns m_p_columns;  ///< P F
+    AffineFields::Weights m_p;          ///< F' P F
     Eigen::LDLT<AffineFields::System> m_factor;
 };
 

@@ -40,4 +40,10 @@ AffineFields::Coefficients AffineFields::moments(const Points& a) const {
     return sum;
 }
 
+void AffineFields::add_isotropic(const Weights& weights, System& system) {
+    for (int i = 0; i < count; ++i)
+        for (int j = 0; j < count; ++j)
+            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) += weights(i, j);
+}
+
 }  // namespace cloth

@@ -17,8 +17,9 @@ class AffineFields {
     using Row = Eigen::Matrix<double, count, 1>;
     using Coefficients = Eigen::Matrix<double, count, 3, Eigen::RowMajor>;
     using Columns = Eigen::Matrix<double, Eigen::Dynamic, count, Eigen::RowMajor>;
-    /// Symmetric, of the coefficients row by row.
-    using System = Eigen::Matrix<double, 3 * count, 3 * count>;
+    using Vector = Eigen::Matrix<double, 3 * count, 1>;          ///< the coefficients, row by row
+    using System = Eigen::Matrix<double, 3 * count, 3 * count>;  ///< symmetric, of such vectors
+    using Weights = Eigen::Matrix<double, count, count>;         ///< symmetric, of the fields
 
     /// Of the points x (n x 3).
     void take(const Points& x);
@@ -28,6 +29,9 @@ class AffineFields {
 
     /// F' a, for a of n x 3.
     Coefficients moments(const Points& a) const;
+
+    /// system += weights for each of the three directions.
+    static void add_isotropic(const Weights& weights, System& system);
 
  private:
     Columns m_columns;

@@ -164,10 +164,9 @@ void ContactHessian::add_product(const Points& direction, Points& product) const
 
 void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& system) const {
     using Row = AffineFields::Row;
-    using Vector = Eigen::Matrix<double, 3 * AffineFields::count, 1>;
     // stiffness (f x n)(f x n)', f: how far each field moves the point
     const auto add = [&](const Row& f, const Vec3& n, double stiffness) {
-        Vector motion;
+        AffineFields::Vector motion;
         for (int k = 0; k < AffineFields::count; ++k) motion.segment<3>(3 * k) = f[k] * n;
         system.noalias() += stiffness * motion * motion.transpose();
     };
@@ -185,16 +184,13 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
     for (const SelfContact& contact : m_self_contacts)
         if (contact.stiffness > 0.0)
             add(combined(contact.row, contact.weight), contact.normal, contact.stiffness);
-    Eigen::Matrix<double, AffineFields::count, AffineFields::count> sliding =
-        Eigen::Matrix<double, AffineFields::count, AffineFields::count>::Zero();
+    AffineFields::Weights sliding = AffineFields::Weights::Zero();
     for (const Slider& slider : m_sliders) {
         const Row f = fields.at(slider.row);
         sliding.noalias() += slider.stiffness * f * f.transpose();
         add(f, slider.normal, -slider.stiffness);
     }
-    for (int i = 0; i < AffineFields::count; ++i)
-        for (int j = 0; j < AffineFields::count; ++j)
-            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) += sliding(i, j);
+    AffineFields::add_isotropic(sliding, system);
 }
 
 void ContactHessian::limit_depth(Points& trial) const {
