@@ -20,9 +20,10 @@ class PartDistance {
     std::optional<double> at(const Vec3& point, double radius) const;
 
  private:
-    Obstacle m_primitive;  ///< of a mesh only the shape counts
-    Pose m_inverse;        ///< from the whole shape's frame to the primitive's
-    Vec3 m_low, m_high;    ///< bounds of a mesh (m)
+    Obstacle m_primitive;   ///< of a mesh only the shape counts
+    double m_extent = 0.0;  ///< of a primitive from its centre (m), infinite for a plane
+    Pose m_inverse;         ///< from the whole shape's frame to the primitive's
+    Vec3 m_low, m_high;     ///< bounds of a mesh (m)
     std::unique_ptr<SurfaceDistance> m_mesh;
 };
 

@@ -23,11 +23,6 @@ double yieldOf(const NearSolid& solid) {
     return solid.object->isKinematicObject() ? 0.5 : 0.0;
 }
 
-/// How far from a point (m) the solid may be at the start of the step and still reach it.
-double reachOf(const NearSolid& solid, const Vec3& point) {
-    return kReach + (solid.motion() * point - point).norm();
-}
-
 LimbSet usedBits(const Boundary& boundary) {
     LimbSet used = 0;
     for (const Obstacle& obstacle : boundary.obstacles)
@@ -93,6 +88,8 @@ void PinchedCloth::findPinches(const Garment& garment, const Points& x,
                                const std::vector<NearSolid>& solids) {
     m_pinches.clear();
     if (solids.size() < 2) return;
+    m_moving.clear();
+    for (const NearSolid& solid : solids) m_moving.push_back({solid.before(), solid.motion()});
     const std::vector<char>& pinned = garment.is_pinned();
     for (int i = 0; i < static_cast<int>(x.rows()); ++i)
         if (!pinned[static_cast<size_t>(i)]) testPoint(x.row(i), {i, i, i}, solids);
@@ -107,42 +104,49 @@ void PinchedCloth::findPinches(const Garment& garment, const Points& x,
 
 void PinchedCloth::testPoint(const Vec3& x, const std::array<int, 3>& nodes,
                              const std::vector<NearSolid>& solids) {
-    for (size_t pincher = 0; pincher < solids.size(); ++pincher) {
-        if (m_yield[pincher] == 0.0) continue;
-        if (!solids[pincher].before().distance(x, reachOf(solids[pincher], x))) continue;
-        for (size_t keeper = 0; keeper < solids.size(); ++keeper) {
-            const bool yields = m_yield[pincher] > m_yield[keeper] ||
-                                (m_yield[pincher] == m_yield[keeper] && pincher > keeper);
-            if (keeper != pincher && yields) testPair(x, nodes, solids, keeper, pincher);
+    m_near.clear();
+    for (size_t s = 0; s < solids.size(); ++s) {
+        const Vec3 place = m_moving[s].motion * x;
+        const double reach = kReach + (place - x).norm();
+        const std::optional<double> distance = m_moving[s].before.distance(x, reach);
+        if (distance) m_near.push_back({s, *distance, reach, place});
+    }
+    for (const Near& pincher : m_near) {
+        const double yield = m_yield[pincher.solid];
+        if (yield == 0.0) continue;
+        for (const Near& keeper : m_near) {
+            const double kept = m_yield[keeper.solid];
+            if (yield > kept || (yield == kept && pincher.solid > keeper.solid))
+                testPair(x, nodes, solids[pincher.solid], keeper, pincher);
         }
     }
 }
 
 /// The planes are those of the surface points that are nearest at the start of the step, when the
 /// point is outside of both.
-void PinchedCloth::testPair(const Vec3& x, const std::array<int, 3>& nodes,
-                            const std::vector<NearSolid>& solids, size_t keeper, size_t pincher) {
-    const NearSolid &kept = solids[keeper], &other = solids[pincher];
-    const NearSolid kept_before = kept.before(), other_before = other.before();
-    const double kept_reach = reachOf(kept, x), other_reach = reachOf(other, x);
-    const std::optional<double> to_kept = kept_before.distance(x, kept_reach);
-    const std::optional<double> to_other = other_before.distance(x, other_reach);
-    if (!to_kept || !to_other) return;
-    const Vec3 out = kept_before.outward(x, kept_reach);
-    const Vec3 other_out = other_before.outward(x, other_reach);
+void PinchedCloth::testPair(const Vec3& x, const std::array<int, 3>& nodes, const NearSolid& other,
+                            const Near& keeper, const Near& pincher) {
+    // The room is the sum of both distances and of what one solid moves towards the other.
+    constexpr double kRounding = 1e-9;  // m
+    const double least =
+        keeper.distance + pincher.distance - (keeper.place - pincher.place).norm() - kRounding;
+    if (least > kRoom) return;
+    const Moving &kept = m_moving[keeper.solid], &pinching = m_moving[pincher.solid];
+    const Vec3 out = kept.before.outward(x, keeper.reach);
+    const Vec3 other_out = pinching.before.outward(x, pincher.reach);
     if (out.isZero(0.0) || other_out.isZero(0.0)) return;
-    const Vec3 kept_point = kept.motion() * Vec3(x - *to_kept * out);
-    const Vec3 other_point = other.motion() * Vec3(x - *to_other * other_out);
-    const Vec3 kept_normal = kept.motion().linear() * out;
-    const Vec3 other_normal = other.motion().linear() * other_out;
+    const Vec3 kept_point = kept.motion * Vec3(x - keeper.distance * out);
+    const Vec3 other_point = pinching.motion * Vec3(x - pincher.distance * other_out);
+    const Vec3 kept_normal = kept.motion.linear() * out;
+    const Vec3 other_normal = pinching.motion.linear() * other_out;
     if (!(kept_normal.dot(other_normal) < kOpposite)) return;
     // Where the point would come to lie on what it keeps to: is the other one there?
-    const Vec3 place = kept.motion() * x;
+    const Vec3& place = keeper.place;
     const Vec3 landing = place - (kept_normal.dot(place - kept_point) - 0.5 * kRoom) * kept_normal;
     if (!other.distance(landing, 0.5 * kRoom)) return;
     const double room = kept_normal.dot(place - kept_point) + other_normal.dot(place - other_point);
     if (room < kRoom)
-        m_pinches.push_back({nodes, keeper, pincher, kept_normal, other_normal, room});
+        m_pinches.push_back({nodes, keeper.solid, pincher.solid, kept_normal, other_normal, room});
 }
 
 double PinchedCloth::roomOf(const Pinch& pinch) const {

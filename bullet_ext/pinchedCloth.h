@@ -57,12 +57,24 @@ class PinchedCloth {
     struct Shift {
         Vec3 before = Vec3::Zero(), now = Vec3::Zero();  ///< (m): at both ends of the step
     };
+    /// A solid during the step.
+    struct Moving {
+        NearSolid before;
+        Pose motion;
+    };
+    /// A solid that a point of the cloth may come between.
+    struct Near {
+        size_t solid;     ///< its number
+        double distance;  ///< (m): of the point, at the start of the step
+        double reach;     ///< (m): how far the solid may be at the start and still be near
+        Vec3 place;       ///< of the point, taken along by the solid
+    };
 
     void findPinches(const Garment& garment, const Points& x, const std::vector<NearSolid>& solids);
     void testPoint(const Vec3& x, const std::array<int, 3>& nodes,
                    const std::vector<NearSolid>& solids);
-    void testPair(const Vec3& x, const std::array<int, 3>& nodes,
-                  const std::vector<NearSolid>& solids, size_t keeper, size_t pincher);
+    void testPair(const Vec3& x, const std::array<int, 3>& nodes, const NearSolid& other,
+                  const Near& keeper, const Near& pincher);
     double roomOf(const Pinch& pinch) const;
     void separate();
     void markNodes(const std::vector<NearSolid>& solids,
@@ -70,8 +82,10 @@ class PinchedCloth {
 
     std::map<const btCollisionObject*, Vec3> m_shifts;  ///< of solids at the end of the last step
     std::vector<Pinch> m_pinches;
-    std::vector<Shift> m_shift;   ///< of each solid
-    std::vector<double> m_yield;  ///< of each solid: the larger one makes room
+    std::vector<Moving> m_moving;  ///< of each solid
+    std::vector<Near> m_near;      ///< of the point that is tested
+    std::vector<Shift> m_shift;    ///< of each solid
+    std::vector<double> m_yield;   ///< of each solid: the larger one makes room
     std::vector<int> m_keeper, m_pincher;
     std::vector<LimbSet> m_ignored;  ///< |V|: bit k is solid m_bits[k]
     std::vector<LimbSet> m_bits;     ///< of each solid, 0: nothing ignores it
