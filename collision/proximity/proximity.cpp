@@ -21,7 +21,10 @@ namespace {
 constexpr double no_distance = std::numeric_limits<double>::infinity();
 constexpr int forget_after = 64;       // queries
 constexpr size_t max_answer_sets = 4;  // sets of query points of different size
-constexpr int min_parallel = 512;      // points; fewer are not worth waking threads
+// Work that is worth waking threads for, which are late where other programs keep the cores busy.
+// One: a point against a primitive, about 20 ns.
+constexpr double min_parallel = 16384;
+constexpr double mesh_work = 32;
 
 /// What a query point was told last.
 struct Answer {
@@ -251,6 +254,12 @@ struct Proximity::Impl {
         stacks.resize(std::max(stacks.size(), size_t(thread_count())));
     }
 
+    int threads_for(int points) const {
+        double work = 0.0;
+        for (const Target& target : targets) work += points * (target.surface ? mesh_work : 1.0);
+        return work < min_parallel ? 1 : thread_count();
+    }
+
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
     /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
     template <class Store>
@@ -258,7 +267,7 @@ struct Proximity::Impl {
                           const std::vector<LimbSet>& ignored, double radius, const Store& store) {
         radius = std::min(radius, settings.radius);
         const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
-        const int threads = count < min_parallel || targets.empty() ? 1 : thread_count();
+        const int threads = threads_for(count);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
         for (int at = 0; at < count; ++at) {
             const int i = rows ? (*rows)[size_t(at)] : at;
