@@ -12,6 +12,7 @@
 #include "bullet_ext/softBodyStep.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
+#include "gnn/deadline.h"
 
 using cloth::ArgumentError;
 using cloth::Garment;
@@ -106,6 +107,8 @@ btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
     cloth::check_range("btGnnSolverSettings.obstacleReach", settings.obstacleReach, 0.02, 1.0);
     cloth::check_range("btGnnSolverSettings.sleepMotion", settings.sleepMotion, 0.0, 0.05);
     cloth::check_range("btGnnSolverSettings.maxFailedSteps", settings.maxFailedSteps, 1, 1000000);
+    cloth::check_range("btGnnSolverSettings.maxMs", settings.maxMs, 0.1,
+                       std::numeric_limits<double>::infinity());
 }
 
 btGnnSoftBodySolver::~btGnnSoftBodySolver() = default;
@@ -312,6 +315,10 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
     m_status.nodesInIgnoredLimbs = 0;
     m_status.times = {};
+    const bool limited = !std::isinf(m_settings.maxMs);
+    const cloth::Deadline deadline =
+        limited ? cloth::Deadline::in(m_settings.maxMs) : cloth::Deadline();
+    int waiting = limited ? activeCloth() : 0;
     for (int i = 0; i < m_softBodySet.size(); ++i) {
         btSoftBody& body = *m_softBodySet[i];
         Entry& entry = m_entries[&body];
@@ -328,10 +335,18 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             body.solveConstraints();
             entry.handover.afterStep(body, static_cast<double>(solverdt));
         }
-        if (entry.stepping == Stepping::cloth)
-            stepCloth(body, entry, static_cast<double>(solverdt));
+        if (entry.stepping != Stepping::cloth) continue;
+        if (limited) entry.step->setMaxMs(deadline.left() / std::max(1, waiting--));
+        stepCloth(body, entry, static_cast<double>(solverdt));
     }
     for (const std::string& message : m_obstacles.takeMessages()) say(message);
+}
+
+int btGnnSoftBodySolver::activeCloth() const {
+    int count = 0;
+    for (int i = 0; i < m_softBodySet.size(); ++i)
+        count += steppingOf(m_softBodySet[i]) == Stepping::cloth && m_softBodySet[i]->isActive();
+    return count;
 }
 
 void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
@@ -345,6 +360,7 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
     if (result.steps > 0) {
         const cloth::StepReport& report = entry.step->lastReport();
         m_status.cutSteps += report.substeps > 1;
+        m_status.shortenedSteps += report.out_of_time;
         m_status.maxIgnoredDepth = std::max(m_status.maxIgnoredDepth, report.max_ignored_depth);
         m_status.nodesInIgnoredLimbs += report.vertices_in_ignored_limbs;
         m_status.times.proximity += report.times.proximity;

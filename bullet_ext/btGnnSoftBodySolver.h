@@ -4,6 +4,7 @@
 #include <BulletSoftBody/btSoftBody.h>
 
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -41,6 +42,10 @@ struct btGnnSolverSettings {
     double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
     int maxFailedSteps = 3;      ///< failures in a row after which Bullet steps it, 1 to 1000000
+    /// Time for all cloth in a world step (ms), 0.1 to infinity (no limit). Each body gets an equal
+    /// share of what is left; its steppers must know limits, see cloth::Stepper::set_max_ms(). What
+    /// the cloth does then depends on how fast the machine is.
+    double maxMs = std::numeric_limits<double>::infinity();
 };
 
 struct btGnnSolverMessage {
@@ -58,6 +63,7 @@ struct btGnnSolverStatus {
     long steps = 0;               ///< calls of Stepper::step() so far
     long failedSteps = 0;         ///< those that failed
     long cutSteps = 0;            ///< those that were taken in parts, see cloth::ClothStepper
+    long shortenedSteps = 0;      ///< those that btGnnSolverSettings::maxMs ended early
     double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle, as the last world step
                                   ///< shows both (m); limbs that it ignores do not count
     /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
@@ -176,6 +182,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void tryBuild(btSoftBody& body, Entry& entry);
     void refresh(btSoftBody& body, Entry& entry);
     void followScale(btSoftBody& body, Entry& entry);
+    int activeCloth() const;
     void stepCloth(btSoftBody& body, Entry& entry, double h);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);

@@ -38,6 +38,8 @@ class SoftBodyStep {
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
+    /// Limits the time of the next cloth steps, see Stepper::set_max_ms().
+    void setMaxMs(double ms) { m_stepper->set_max_ms(ms); }
     const StepReport& lastReport() const { return m_report; }
     /// Impulse that dynamic rigid bodies got from the cloth in the last world step (N s).
     const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }

@@ -30,6 +30,7 @@ struct StepReport {
     /// none: there were fewer.
     std::optional<double> gain;
     bool converged = false;            ///< the stepper's own tolerance was met
+    bool out_of_time = false;          ///< Stepper::set_max_ms() ended iterations, cuts or searches
     bool prediction_rejected = false;  ///< the network's answer was not finite, or of higher energy
                                        ///< than the guess, which the step started from instead
     double max_penetration = 0.0;  ///< depth inside an obstacle after the step (m): deepest vertex
@@ -84,6 +85,15 @@ class Stepper {
     /// @param dt        time step (s)
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
+
+    /// Limits the time of each step from now on (ms, above 0; infinity: no limit). It ends
+    /// iterations, cuts and searches early: what a step does then depends on how fast the machine
+    /// is. `residual`, `gain` and `tunnelled` of its report say what was reached.
+    /// @return  false: this stepper takes the time that it takes
+    virtual bool set_max_ms(double ms) {
+        (void)ms;
+        return false;
+    }
 
     /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
     /// N); they sum to zero. What they leave of a step's change of momentum came from outside.

@@ -192,6 +192,14 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings) {
+    const size_t limit = name.rfind('@');
+    if (limit != std::string::npos) {
+        const int ms = whole_number("solver " + name, name.substr(limit + 1), 1, 100000);
+        auto stepper = make_solver(name.substr(0, limit), scene, settings);
+        if (!stepper->set_max_ms(ms))
+            throw UsageError("solver " + name + ": knows no limit of its time");
+        return stepper;
+    }
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
                                                     scene.segments());

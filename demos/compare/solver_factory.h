@@ -41,6 +41,7 @@ struct SolverSettings {
 /// | bf16-VARIANT[+K]   | the same, in the engine with products in bfloat16             |
 ///
 /// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
+/// They also take "@M": the same in M ms a step, see Stepper::set_max_ms().
 ///
 /// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,

@@ -75,6 +75,55 @@ TEST(GnnSolver, StatusTellsWhatIsInsideLimbsThatItIgnores) {
     }
 }
 
+/// Takes down the limit that it is given.
+class Limited : public InIgnoredLimbs {
+ public:
+    explicit Limited(std::vector<double>& limits) : InIgnoredLimbs(0.0), m_limits(&limits) {}
+    bool set_max_ms(double ms) override {
+        m_limits->push_back(ms);
+        return true;
+    }
+    StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
+        StepReport report = InIgnoredLimbs::step(boundary, dt, state);
+        report.out_of_time = true;
+        return report;
+    }
+
+ private:
+    std::vector<double>* m_limits;
+};
+
+TEST(GnnSolver, TheTimeOfAWorldStepIsSharedByItsCloth) {
+    constexpr double kMaxMs = 1e6;
+    for (const double maxMs : {kMaxMs, std::numeric_limits<double>::infinity()}) {
+        std::vector<double> limits;
+        btGnnSolverSettings settings;
+        settings.maxMs = maxMs;
+        btGnnSoftBodySolver solver(
+            [&](const Garment&) { return std::make_unique<Limited>(limits); }, settings);
+        World world(&solver);
+        world.add(patch(world.info(), {0, 2, 0}));
+        world.add(patch(world.info(), {0, 3, 0}));
+        world.step(1.0 / 60.0, 1);
+        EXPECT_EQ(solver.status().shortenedSteps, 2);
+        if (maxMs != kMaxMs) {
+            EXPECT_TRUE(limits.empty()) << "what the steppers' own settings say counts";
+            continue;
+        }
+        ASSERT_EQ(limits.size(), 2u);
+        EXPECT_NEAR(limits[0], kMaxMs / 2, 1e-2 * kMaxMs);
+        EXPECT_NEAR(limits[1], kMaxMs, 1e-2 * kMaxMs) << "the first one took hardly any";
+    }
+}
+
+TEST(GnnSolver, TimesOutOfRangeAreRefused) {
+    btGnnSolverSettings settings;
+    for (const double bad : {0.0, 0.05, std::numeric_limits<double>::quiet_NaN()}) {
+        settings.maxMs = bad;
+        EXPECT_THROW(btGnnSoftBodySolver(free_fall(), settings), ArgumentError);
+    }
+}
+
 TEST(GnnSolver, FreeFallIsTheClosedFormAtTheWorldsTimeStep) {
     for (double rate : {60.0, 240.0}) {
         btGnnSoftBodySolver solver(free_fall());

@@ -74,7 +74,8 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
 }
 
 MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x,
-                                     const IterationLimits& limits, const PotentialValue* at_x) {
+                                     const IterationLimits& limits, const PotentialValue* at_x,
+                                     const Deadline& deadline) {
     MinimiseReport report;
     if (!start(potential, x, at_x, report)) {
         report.finite = false;
@@ -87,8 +88,16 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
     };
     Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
     gain.after(report.energy);
+    double longest = 0.0, left = deadline.left();  // ms
     while (report.iterations < limits.iterations) {
         if (met() && report.iterations >= limits.least_iterations) break;
+        if (report.iterations > 0 && deadline.is_set()) {
+            const double now = deadline.left();
+            longest = std::max(longest, left - now);
+            left = now;
+            report.out_of_time = left < longest;
+            if (report.out_of_time) break;
+        }
         if (!iterate(potential, x, report)) {
             report.gain = 0.0;
             break;

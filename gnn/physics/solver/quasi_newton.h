@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "gnn/deadline.h"
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/solver/lbfgs_history.h"
 #include "gnn/physics/solver/quasi_newton_matrix.h"
@@ -54,8 +55,9 @@ struct MinimiseReport {
     /// by which the garment as a whole would have to be moved against its inertia for as much
     /// energy. None: there were fewer; 0: E could not be lowered any further.
     std::optional<double> gain;
-    bool converged = false;  ///< the tolerance, or the least gain, was met
-    bool finite = true;      ///< false: the energy at the start was not finite, x is as it was
+    bool converged = false;    ///< the tolerance, or the least gain, was met
+    bool out_of_time = false;  ///< the deadline ended it
+    bool finite = true;        ///< false: the energy at the start was not finite, x is as it was
 };
 
 /// Minimises the incremental potential with one constant matrix P (see QuasiNewtonMatrix) in the
@@ -82,9 +84,10 @@ class QuasiNewton {
     /// @param at_x  E and its gradient at x, where they are known already; else null
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
                             const PotentialValue* at_x = nullptr);
-    /// The same within other limits than the settings'.
+    /// The same within other limits than the settings', the first iteration whatever the deadline.
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
-                            const IterationLimits& limits, const PotentialValue* at_x = nullptr);
+                            const IterationLimits& limits, const PotentialValue* at_x = nullptr,
+                            const Deadline& deadline = {});
 
     /// Makes P for a fabric and a time step (s) ahead of time; those of the last 16 are kept.
     /// False: not positive definite.

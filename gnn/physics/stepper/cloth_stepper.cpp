@@ -28,6 +28,7 @@ void add(const StepReport& part, StepReport& report) {
     report.residual = part.residual;
     report.gain = part.gain;
     report.converged = part.converged && report.converged;
+    report.out_of_time = part.out_of_time || report.out_of_time;
     report.max_penetration = part.max_penetration;
     report.max_entry = std::max(report.max_entry, part.max_entry);
     if (part.tunnelled)
@@ -38,6 +39,12 @@ void add(const StepReport& part, StepReport& report) {
     report.times.features += part.times.features;
     report.times.solve += part.times.solve;
     report.times.contact += part.times.contact;
+}
+
+/// What a part like this takes with one iteration (ms).
+double least_ms(const StepReport& report) {
+    return report.times.proximity + report.times.contact +
+           report.times.solve / std::max(1, report.iterations);
 }
 
 }  // namespace
@@ -52,6 +59,9 @@ ClothStepper::ClothStepper(const Garment& garment, const ClothStepperSettings& s
                            const std::shared_ptr<ObstacleTrees>& trees)
     : ClothStepper(garment, std::make_unique<StepSolver>(garment, settings.step, start, trees),
                    settings.guard, settings.substeps, trees) {
+    check_range("ClothStepperSettings.max_ms", settings.max_ms, 0.1,
+                std::numeric_limits<double>::infinity());
+    set_max_ms(settings.max_ms);
 }
 
 ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> solver,
@@ -85,6 +95,11 @@ void ClothStepper::prepare(double dt) {
         m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
 }
 
+bool ClothStepper::set_max_ms(double ms) {
+    m_max_ms = ms;
+    return true;
+}
+
 bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
     m_solver->internal_forces(x, forces);
     return true;
@@ -92,6 +107,7 @@ bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
 
 StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
+    m_deadline = std::isinf(m_max_ms) ? Deadline() : Deadline::in(m_max_ms);
     m_trees->begin_step();
     if (!m_guard.limbs) return guarded_step(boundary, dt, state);
     StepReport report = guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
@@ -109,12 +125,15 @@ void ClothStepper::report_ignored(const Points& x, StepReport& report) {
 /// A step that turns out to be too coarse is taken once more, as finely as its report asks for.
 StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, ClothState& state) {
     const double motion = is_watched() ? relative_motion(*m_garment, boundary, dt, state) : 0.0;
-    const int foreseen = std::max(m_substeps, substeps_for(motion, m_guard.max_motion));
+    const int safe = std::max(m_substeps, substeps_for(motion, m_guard.max_motion));
+    const int foreseen = affordable(safe, m_substeps);
     const bool may_repeat = foreseen < m_guard.max_substeps;
     if (may_repeat) m_before = state;
     StepReport report = take(foreseen, boundary, dt, motion, state);
     Lag lag = std::exchange(m_next_lag, {});
-    const int finer = may_repeat ? substeps_after(report, motion) : foreseen;
+    const int asked = may_repeat ? substeps_after(report, motion) : foreseen;
+    const int finer = affordable(asked, report.finite ? foreseen : std::min(asked, 2));
+    const bool shortened = foreseen < safe || finer < asked;
     if (finer > foreseen) {
         const StepReport repeated = take(finer, boundary, dt, motion, m_before);
         if (repeated.finite || !report.finite) {
@@ -123,6 +142,7 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
             std::swap(lag, m_next_lag);
         }
     }  // better the first step than none
+    report.out_of_time = report.out_of_time || shortened;
     if (report.finite && report.substeps > 1) std::swap(m_lag, lag);
     return report;
 }
@@ -137,9 +157,13 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
                                     ClothState& state) {
     const bool search_it = is_watched() && motion > m_guard.watch_motion;
     if (search_it) m_x_before = state.x;
+    m_solver->set_deadline(search_it
+                               ? m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms))
+                               : m_deadline);
     StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                         : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_x_before, state.x, report);
+    if (m_part_ms == 0.0) m_part_ms = least_ms(report);
     return report;
 }
 
@@ -159,10 +183,15 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
     m_part.begin(*m_garment, state, boundary, substeps);
+    m_part_ms = 0.0;
     for (int k = 0; k < substeps; ++k) {
         if (k > 0) m_trees->begin_step();
-        add(take_part(m_part.take(k), dt / substeps, limits), report);
+        if (m_deadline.is_set())
+            m_solver->set_deadline(Deadline::in(m_deadline.left() / (substeps - k)));
+        const StepReport part = take_part(m_part.take(k), dt / substeps, limits);
+        add(part, report);
         if (!report.finite) return report;
+        m_part_ms += least_ms(part) / substeps;
     }
     m_state.time = state.time + dt;
     m_next_lag.substeps = substeps;
@@ -186,10 +215,15 @@ StepReport ClothStepper::take_part(const Boundary& part, double dt, const Iterat
 
 void ClothStepper::search(const Boundary& boundary, const Points& x0, const Points& x1,
                           StepReport& report) {
+    if (m_deadline.left() < m_search_ms) {
+        report.out_of_time = true;
+        return;
+    }
     Stopwatch watch;
     m_detector.find(boundary, x0, x1, 0);
     report.tunnelled = m_detector.thinnest();
-    report.times.contact += watch.lap();
+    m_search_ms = watch.lap();
+    report.times.contact += m_search_ms;
 }
 
 /// How finely a step of this motion should have been taken.
@@ -200,6 +234,14 @@ int ClothStepper::substeps_after(const StepReport& report, double motion) const 
     if (report.tunnelled)
         substeps = std::max(substeps, substeps_for(motion, std::min(m_guard.tunnelling_motion,
                                                                     0.5 * *report.tunnelled)));
+    return substeps;
+}
+
+/// As many parts as there is time for, each with one iteration.
+int ClothStepper::affordable(int substeps, int least) const {
+    const double left = m_deadline.left();
+    while (substeps > least && substeps * m_part_ms > left)
+        substeps = std::max(least, substeps / 2);
     return substeps;
 }
 

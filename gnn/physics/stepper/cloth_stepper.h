@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 
 #include "collision/ccd/tunnelling.h"
@@ -50,6 +51,8 @@ struct ClothStepperSettings {
     int substeps = 1;  ///< equal parts of every step at least, 1 to 64: smaller steps damp less and
                        ///< are nearer to the equations of motion. Parts do not use the start
     GuardSettings guard;
+    double max_ms = std::numeric_limits<double>::infinity();  ///< see ClothStepper::set_max_ms(),
+                                                              ///< 0.1 to infinity
 
     /// Quasi-Newton steps that are taken as they are, for measurements.
     static ClothStepperSettings plain(const IterationLimits& limits = {}) {
@@ -103,6 +106,11 @@ class ClothStepper : public Stepper {
     /// Factorises for steps of this length and for their parts.
     void prepare(double dt) override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    /// Before the limit iterations end, parts are taken with fewer of them, then steps are cut into
+    /// fewer parts, and what may have been passed through is not searched for. The start, one
+    /// iteration for each part and contact projection take the time that they take. Of steps of
+    /// much motion half is kept for taking them again. Newton's method takes no notice.
+    bool set_max_ms(double ms) override;
     bool internal_forces(const Points& x, Points& forces) const override;
     std::optional<double> internal_energy(const Points& x) const override {
         return m_solver->internal_energy(x);
@@ -127,6 +135,7 @@ class ClothStepper : public Stepper {
     };
 
     bool is_made_for(double dt) const;
+    int affordable(int substeps, int least) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take(int substeps, const Boundary& boundary, double dt, double motion,
@@ -151,6 +160,10 @@ class ClothStepper : public Stepper {
     ClothState m_state;     ///< during a step of parts
     Points m_x_before;      ///< |V| x 3 (m): of a step that is searched
     Lag m_lag, m_next_lag;  ///< of the last step; of the one that is being taken
+    double m_max_ms = std::numeric_limits<double>::infinity();
+    Deadline m_deadline;       ///< of this step
+    double m_part_ms = 0.0;    ///< what a part takes at least, as the last ones did
+    double m_search_ms = 0.0;  ///< what the last search took
 };
 
 }  // namespace cloth

@@ -86,11 +86,11 @@ StepReport StepSolver::solve(const Boundary& boundary, double dt, StepStart* sta
         if (!as_predicted && !descend(boundary, limits, at_x, state, report))
             return StepReport::failed();
         report.times.solve += watch.lap();
-        if (boundary.obstacles.empty()) break;
+        if (boundary.obstacles.empty() || report.out_of_time) break;
     }
     report.times.solve -= report.times.features;
     project(boundary, state, report);
-    report.times.contact = watch.lap();
+    m_contact_ms = report.times.contact = watch.lap();
     return accept(dt, state) ? report : StepReport::failed();
 }
 
@@ -148,7 +148,8 @@ const PotentialValue* StepSolver::lower_of_guess_and_prediction(bool guess_known
 MinimiseReport StepSolver::minimise(const IterationLimits& limits, const PotentialValue* at_x) {
     if (m_settings.minimiser == MinimiserKind::newton)
         return m_newton.minimise(m_potential, m_x, at_x);
-    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x);
+    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x,
+                                   m_deadline.earlier(m_contact_ms));
 }
 
 /// From m_x to the minimum, or as far as the limits allow. False: nothing is finite.
@@ -164,6 +165,7 @@ bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits
     report.residual = minimum.residual;
     report.gain = minimum.gain;
     report.converged = minimum.converged;
+    report.out_of_time = report.out_of_time || minimum.out_of_time;
     return minimum.finite;
 }
 

@@ -60,6 +60,9 @@ class StepSolver {
 
     /// Builds what steps of this length (s) need. Never throws.
     void prepare(double dt);
+    /// When steps have to be done. The start, one iteration and contact are always computed, and
+    /// Newton's method takes no notice.
+    void set_deadline(const Deadline& deadline) { m_deadline = deadline; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
     /// A whole step, from the start that the settings name. The arguments have passed
@@ -108,6 +111,8 @@ class StepSolver {
     ContactProjection m_projection;
     SelfContactProjection m_self_contact;
     SurfaceContacts m_contacts;
+    Deadline m_deadline;
+    double m_contact_ms = 0.0;  ///< what contact took in the last step
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
