@@ -163,9 +163,13 @@ ClosestFaceTree::Eight ClosestFaceTree::box_distances(const Node& node, const Ei
     return sum;
 }
 
-/// A bound for single-precision squared distances that keeps everything up to `squared`.
-static float widened(double squared) {
-    return static_cast<float>(squared) * 1.000002f + std::numeric_limits<float>::min();
+void ClosestFaceTree::nearest_last(Entry* first, Entry* end) {
+    for (Entry* entry = first + 1; entry < end; ++entry) {  // insertion sort: one to three entries
+        const Entry moved = *entry;
+        Entry* place = entry;
+        for (; place > first && place[-1].squared < moved.squared; --place) *place = place[-1];
+        *place = moved;
+    }
 }
 
 /// Appends the children within the bound to the stack, the nearest last, and returns its new end.
@@ -177,12 +181,7 @@ ClosestFaceTree::Entry* ClosestFaceTree::push_children(const Node& node, const E
         *end = {node.child[slot], squared[slot]};
         end += squared[slot] <= bound && (node.limbs[slot] & ~ignored) != 0;
     }
-    for (Entry* entry = first + 1; entry < end; ++entry) {  // insertion sort: one to three entries
-        const Entry moved = *entry;
-        Entry* place = entry;
-        for (; place > first && place[-1].squared < moved.squared; --place) *place = place[-1];
-        *place = moved;
-    }
+    nearest_last(first, end);
     return end;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -56,6 +57,17 @@ class ClosestFaceTree {
     FaceHit closest(const Vec3& q, double radius, int hint, Stack& stack,
                     LimbSet ignored = 0) const;
 
+    /// One of several points that are asked for together.
+    struct Query {
+        Vec3 x;               ///< (m)
+        int hint = -1;        ///< see closest()
+        LimbSet ignored = 0;  ///< see closest()
+    };
+    static constexpr int packet = 8;
+
+    /// The same for 1 to `packet` points, which is faster where they are near each other.
+    void closest(const Query* queries, int count, double radius, Stack& stack, FaceHit* hits) const;
+
     /// First face that the ray from `q` along the unit vector `direction` meets within `length`.
     /// Where it meets an edge, either face or (rarely, by rounding) none may be reported.
     /// @param ignored   limbs whose faces the ray passes through
@@ -78,14 +90,21 @@ class ClosestFaceTree {
         LimbSet limbs[width];       ///< of the faces below
     };
 
+    struct Packet;
+
     void build_nodes();
     void mark_limbs();
     void localize();
     void fit_leaves();
     void fit_inner_nodes();
+    /// A bound for single-precision squared distances that keeps everything up to `squared`.
+    static float widened(double squared) {
+        return static_cast<float>(squared) * 1.000002f + std::numeric_limits<float>::min();
+    }
     static Eight box_distances(const Node& node, const Eigen::Vector3f& q);
     static Eight box_entries(const Node& node, const Eigen::Vector3f& q,
                              const Eigen::Vector3f& inverse, float length);
+    static void nearest_last(Entry* first, Entry* end);
     static Entry* push_children(const Node& node, const Eigen::Vector3f& q, float bound,
                                 LimbSet ignored, Entry* end);
     double ray_distance(const Vec3& q, const Vec3& direction, int face) const;

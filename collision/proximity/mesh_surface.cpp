@@ -63,7 +63,17 @@ MeshSurface::MeshSurface(std::shared_ptr<const Faces> faces, const Points& verti
 
 SurfaceHit MeshSurface::closest(const Vec3& q, double radius, int hint,
                                 ClosestFaceTree::Stack& stack, LimbSet ignored) const {
-    const FaceHit hit = m_tree.closest(q, radius, hint, stack, ignored);
+    return with_sign(m_tree.closest(q, radius, hint, stack, ignored), q, ignored);
+}
+
+void MeshSurface::closest(const ClosestFaceTree::Query* queries, int count, double radius,
+                          ClosestFaceTree::Stack& stack, SurfaceHit* hits) const {
+    FaceHit found[ClosestFaceTree::packet];
+    m_tree.closest(queries, count, radius, stack, found);
+    for (int k = 0; k < count; ++k) hits[k] = with_sign(found[k], queries[k].x, queries[k].ignored);
+}
+
+SurfaceHit MeshSurface::with_sign(const FaceHit& hit, const Vec3& q, LimbSet ignored) const {
     if (hit.face < 0) return {};
     Vec3 point = Vec3::Zero();
     for (int k = 0; k < 3; ++k)

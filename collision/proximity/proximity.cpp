@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "collision/geometry/faces_in_range.h"
+#include "collision/geometry/spatial_order.h"
 #include "collision/proximity/mesh_surface.h"
 #include "collision/proximity/obstacle_trees.h"
 #include "data/core/check_range.h"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr double no_distance = std::numeric_limits<double>::infinity();
 constexpr int forget_after = 64;       // queries
+constexpr int reorder_after = 32;      // queries
+constexpr size_t few_rows = 16;        // one row of so many is not worth bringing into order
 constexpr size_t max_answer_sets = 4;  // sets of query points of different size
 // Work that is worth waking threads for, which are late where other programs keep the cores busy.
 // One: a point against a primitive, about 20 ns.
@@ -50,6 +53,12 @@ struct Answers {
         surface = asked;
         for (Answer& answer : of) answer.radius = -1.0;
     }
+};
+
+/// The order in which as many points are searched for.
+struct SearchOrder {
+    std::vector<int> rows;
+    int queries = 0;
 };
 
 /// What is remembered of a mesh between queries.
@@ -84,7 +93,8 @@ Answers& answers_for(SearchedMesh& mesh, size_t count) {
                               [&](const Answers& set) { return set.of.size() == count; });
     if (found == sets.end()) {
         if (sets.size() == max_answer_sets) sets.pop_back();
-        found = sets.insert(sets.end(), Answers{nullptr, std::vector<Answer>(count)});
+        sets.emplace_back().of.resize(count);
+        found = std::prev(sets.end());
     }
     std::rotate(sets.begin(), found, found + 1);
     return sets.front();
@@ -99,6 +109,40 @@ const SurfaceHit& nearest_on_mesh(const Target& target, const Vec3& x, size_t po
     answer = {target.surface->closest(x, radius, hint, stack, ignored), x, radius, ignored};
     return answer.hit;
 }
+
+/// Answers to points that are searched for in one pass; find_nearest() then finds them answered.
+class SearchTogether {
+ public:
+    SearchTogether(const Target& target, double radius, ClosestFaceTree::Stack& stack)
+        : m_target(target), m_radius(radius), m_stack(stack) {}
+
+    void add(const Vec3& x, size_t point, LimbSet ignored) {
+        const Answer& answer = m_target.answers->of[point];
+        if (!x.allFinite() || (m_target.obstacle->solid & ignored) != 0 ||
+            answer.is_to(x, m_radius, ignored))
+            return;
+        m_points[m_count] = point;
+        m_queries[m_count++] = {x, answer.hit.face, ignored};
+    }
+
+    void search() {
+        if (m_count == 0) return;
+        SurfaceHit hits[ClosestFaceTree::packet];
+        m_target.surface->closest(m_queries, m_count, m_radius, m_stack, hits);
+        for (int k = 0; k < m_count; ++k)
+            m_target.answers->of[m_points[k]] = {hits[k], m_queries[k].x, m_radius,
+                                                 m_queries[k].ignored};
+        m_count = 0;
+    }
+
+ private:
+    const Target& m_target;
+    const double m_radius;
+    ClosestFaceTree::Stack& m_stack;
+    int m_count = 0;
+    size_t m_points[ClosestFaceTree::packet];
+    ClosestFaceTree::Query m_queries[ClosestFaceTree::packet];
+};
 
 Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
                      LimbSet ignored, ClosestFaceTree::Stack& stack) {
@@ -193,6 +237,9 @@ struct Proximity::Impl {
     std::vector<SearchedMesh> meshes;
     std::vector<Target> targets;
     std::vector<ClosestFaceTree::Stack> stacks;  // one per thread
+    std::vector<SearchOrder> orders;
+    std::vector<int> ordered;    // rows
+    std::vector<char> is_asked;  // |V|
 
     int thread_count() const {
         return settings.threads > 0 ? settings.threads : omp_get_max_threads();
@@ -260,20 +307,64 @@ struct Proximity::Impl {
         return work < min_parallel ? 1 : thread_count();
     }
 
+    /// Neighbours follow each other. Made anew now and then: points move slowly.
+    const std::vector<int>& order_of(const Points& x) {
+        const auto count = static_cast<size_t>(x.rows());
+        auto order = std::find_if(orders.begin(), orders.end(), [&](const SearchOrder& known) {
+            return known.rows.size() == count;
+        });
+        if (order == orders.end()) {
+            if (orders.size() == max_answer_sets) orders.erase(orders.begin());
+            orders.emplace_back();
+            order = std::prev(orders.end());
+        }
+        if (order->queries++ % reorder_after == 0)
+            order->rows = spatial_order(x, ClosestFaceTree::packet);
+        return order->rows;
+    }
+
+    /// The rows of x to search for, in an order that suits; null: all of them.
+    const std::vector<int>& rows_in_order(const Points& x, const std::vector<int>* rows) {
+        if (!rows) return order_of(x);
+        if (rows->size() * few_rows < size_t(x.rows())) return *rows;
+        is_asked.assign(size_t(x.rows()), 0);
+        for (const int i : *rows) is_asked[size_t(i)] = 1;
+        ordered.clear();
+        for (const int i : order_of(x))
+            if (is_asked[size_t(i)]) ordered.push_back(i);
+        return ordered;
+    }
+
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
     /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
     template <class Store>
     void for_each_nearest(const Points& x, const std::vector<int>* rows,
                           const std::vector<LimbSet>& ignored, double radius, const Store& store) {
         radius = std::min(radius, settings.radius);
-        const int count = rows ? static_cast<int>(rows->size()) : static_cast<int>(x.rows());
+        const std::vector<int>& order = rows_in_order(x, rows);
+        const int count = static_cast<int>(order.size());
         const int threads = threads_for(count);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 128) if (threads > 1)
-        for (int at = 0; at < count; ++at) {
-            const int i = rows ? (*rows)[size_t(at)] : at;
+        const auto passed_over = [&](int i) {
+            return ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
+        };
+        constexpr int packet = ClosestFaceTree::packet;
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 16) if (threads > 1)
+        for (int first = 0; first < count; first += packet) {
             ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
-            const LimbSet passed_over = ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
-            store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over, stack));
+            const int last = std::min(first + packet, count);
+            for (const Target& target : targets) {
+                if (!target.surface) continue;
+                SearchTogether together(target, radius, stack);
+                for (int at = first; at < last; ++at) {
+                    const int i = order[size_t(at)];
+                    together.add(x.row(i), size_t(i), passed_over(i));
+                }
+                together.search();
+            }
+            for (int at = first; at < last; ++at) {
+                const int i = order[size_t(at)];
+                store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over(i), stack));
+            }
         }
     }
 };

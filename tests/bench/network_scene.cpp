@@ -3,11 +3,9 @@
 #include <cmath>
 
 #include "collision/proximity/proximity.h"
-#include "data/body/animated_body.h"
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
-#include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/stepper/guess.h"
 
 namespace cloth::test {
@@ -23,21 +21,6 @@ Obstacle filling_sphere() {
     return sphere;
 }
 
-void hang(const Garment& garment, Boundary& boundary, ClothState& state) {
-    ClothStepper stepper(garment, ClothStepperSettings::plain());
-    std::unique_ptr<AnimatedBody> body;
-    try {
-        body = std::make_unique<AnimatedBody>(std::make_shared<const Body>(Body::load_default()),
-                                              load_motion_by_name("01_01"));
-    } catch (const LoadError&) {
-        boundary.obstacles = {filling_sphere()};
-    }
-    for (int frame = 0; frame < 45; ++frame) {
-        if (body) boundary.obstacles = {body->obstacle(frame * dt, (frame + 1) * dt)};
-        if (frame < 44) stepper.step(boundary, dt, state);
-    }
-}
-
 /// Rows and widths of a perceptron with two hidden layers.
 double perceptron(double rows, double inputs, double width, double outputs) {
     return 2.0 * rows * (inputs * width + width * width + width * outputs);
@@ -45,10 +28,36 @@ double perceptron(double rows, double inputs, double width, double outputs) {
 
 }  // namespace
 
-TshirtMoment::TshirtMoment()
-    : garment("tshirt", load_mesh(asset_path("garments/tshirt.obj")), Fabric::soft_cotton()),
-      state(ClothState::at_rest(garment)) {
-    hang(garment, boundary, state);
+Garment TshirtMotion::load_garment() {
+    return Garment("tshirt", load_mesh(asset_path("garments/tshirt.obj")), Fabric::soft_cotton());
+}
+
+TshirtMotion::TshirtMotion(const Garment& garment)
+    : m_stepper(garment, ClothStepperSettings::plain()), m_state(ClothState::at_rest(garment)) {
+    try {
+        m_body = std::make_unique<AnimatedBody>(std::make_shared<const Body>(Body::load_default()),
+                                                load_motion_by_name("01_01"));
+    } catch (const LoadError&) {
+        m_boundary.obstacles = {filling_sphere()};
+    }
+    show_obstacle();
+}
+
+void TshirtMotion::show_obstacle() {
+    if (m_body) m_boundary.obstacles = {m_body->obstacle(m_frame * dt, (m_frame + 1) * dt)};
+}
+
+void TshirtMotion::step() {
+    m_stepper.step(m_boundary, dt, m_state);
+    ++m_frame;
+    show_obstacle();
+}
+
+TshirtMoment::TshirtMoment() : garment(TshirtMotion::load_garment()) {
+    TshirtMotion motion(garment);
+    for (int frame = 0; frame < 44; ++frame) motion.step();
+    boundary = motion.boundary();
+    state = motion.state();
 }
 
 NetworkInput::NetworkInput(const TshirtMoment& moment, const ModelConfig& config)

@@ -2,13 +2,36 @@
 
 #include <memory>
 
+#include "data/body/animated_body.h"
 #include "gnn/graph/features.h"
 #include "gnn/model/model_config.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 
 namespace cloth::test {
 
-/// The T-shirt (3,991 vertices) as it hangs on the default body, half a second into motion 01_01.
-/// Without assimp-testmodels: on a sphere that fills it.
+/// The T-shirt (3,991 vertices), on the default body and motion 01_01, frame by frame. Without
+/// assimp-testmodels: on a sphere that fills it.
+class TshirtMotion {
+ public:
+    static Garment load_garment();
+    /// Keeps a reference to `garment`.
+    explicit TshirtMotion(const Garment& garment);
+
+    const Boundary& boundary() const { return m_boundary; }  ///< of the next step
+    const ClothState& state() const { return m_state; }
+    void step();
+
+ private:
+    void show_obstacle();
+
+    ClothStepper m_stepper;
+    std::unique_ptr<AnimatedBody> m_body;  ///< null: the sphere
+    Boundary m_boundary;
+    ClothState m_state;
+    int m_frame = 0;
+};
+
+/// TshirtMotion after 44 frames.
 struct TshirtMoment {
     TshirtMoment();
     Garment garment;

@@ -1,0 +1,297 @@
+// A step of the T-shirt, stage by stage: where its time goes.
+//
+//     build/release/tests/bench/step_bench --benchmark_enable_random_interleaving=true
+//         --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+//
+// The garment has 3,991 vertices and moves with the default body (26,756 faces) through 60 frames
+// of motion 01_01; without assimp-testmodels it lies on a sphere. Each benchmark goes from frame to
+// frame, as a stepper does. `per_vertex` is in nanoseconds. The argument is the number of threads.
+
+#include <benchmark/benchmark.h>
+#include <omp.h>
+
+#include "collision/proximity/obstacle_trees.h"
+#include "collision/proximity/ridge_contacts.h"
+#include "collision/response/contact_projection.h"
+#include "data/core/paths.h"
+#include "demos/provenance/provenance.h"
+#include "gnn/model/make_cloth.h"
+#include "gnn/physics/energy/bending.h"
+#include "gnn/physics/energy/strain.h"
+#include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/guess.h"
+#include "tests/bench/network_scene.h"
+
+namespace cloth::test {
+namespace {
+
+constexpr double dt = 1.0 / 30.0;
+
+/// What a stage is given in a frame.
+struct Moment {
+    Boundary boundary;
+    ClothState state;
+    SurfaceContacts contacts;
+    Points guess, solved;  ///< |V| x 3 (m): after three iterations, not projected yet
+};
+
+struct Recording {
+    Garment garment;
+    std::vector<Moment> moments;
+
+    Recording() : garment(TshirtMotion::load_garment()) {
+        TshirtMotion motion(garment);
+        Proximity proximity;
+        RidgeFinder ridges(garment);
+        IncrementalPotential potential(garment);
+        QuasiNewton solver(garment, IterationLimits::exactly(3));
+        for (int frame = 0; frame < 60; ++frame) {
+            Moment moment{motion.boundary(), motion.state(), {}, {}, {}};
+            proximity.query(moment.state.x, moment.boundary, moment.contacts);
+            ridges.find(proximity, moment.boundary, moment.state.x, moment.contacts,
+                        StepEnd::start);
+            potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+            starting_guess(garment, moment.state, moment.boundary, moment.contacts, dt,
+                           PotentialSettings().contact_distance, moment.guess);
+            moment.solved = moment.guess;
+            solver.minimise(potential, moment.solved);
+            moments.push_back(std::move(moment));
+            motion.step();
+        }
+    }
+};
+
+const Recording& recording() {
+    static const Recording instance;
+    return instance;
+}
+
+/// Runs `work` on one moment after the other.
+template <class Work>
+void for_moments(benchmark::State& state, const Work& work) {
+    omp_set_num_threads(static_cast<int>(state.range(0)));
+    const auto& moments = recording().moments;
+    size_t at = 0;
+    for (auto _ : state) {
+        work(moments[at]);
+        at = (at + 1) % moments.size();
+    }
+    const auto vertices = static_cast<double>(recording().garment.vertex_count());
+    state.counters["per_vertex"] =
+        benchmark::Counter(1e-9 * vertices, benchmark::Counter::kIsIterationInvariantRate |
+                                                benchmark::Counter::kInvert);
+}
+
+void fit_trees(benchmark::State& state) {
+    ObstacleTrees trees;
+    for_moments(state, [&](const Moment& moment) {
+        trees.begin_step();
+        for (const Obstacle& obstacle : moment.boundary.obstacles)
+            benchmark::DoNotOptimize(trees.surface(obstacle, StepEnd::end));
+    });
+}
+
+/// The trees are fitted outside of the measured time.
+void nearest_points(benchmark::State& state) {
+    auto trees = std::make_shared<ObstacleTrees>();
+    Proximity proximity({}, trees);
+    SurfaceContacts contacts;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        trees->begin_step();
+        for (const Obstacle& obstacle : moment.boundary.obstacles)
+            trees->surface(obstacle, StepEnd::end);
+        state.ResumeTiming();
+        proximity.query(moment.solved, moment.boundary, contacts, StepEnd::end);
+    });
+}
+
+/// Nearest points included.
+void contact_projection(benchmark::State& state) {
+    auto trees = std::make_shared<ObstacleTrees>();
+    Proximity proximity({}, trees);
+    ContactProjection projection(recording().garment);
+    SurfaceContacts contacts;
+    Points x;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        trees->begin_step();
+        for (const Obstacle& obstacle : moment.boundary.obstacles)
+            trees->surface(obstacle, StepEnd::end);
+        x = moment.solved;
+        state.ResumeTiming();
+        projection.resolve(proximity, moment.boundary, 5e-4, x, contacts);
+    });
+}
+
+void ridges(benchmark::State& state) {
+    Proximity proximity;
+    RidgeFinder finder(recording().garment);
+    SurfaceContacts contacts;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        proximity.query(moment.state.x, moment.boundary, contacts);
+        state.ResumeTiming();
+        finder.find(proximity, moment.boundary, moment.state.x, contacts, StepEnd::start);
+    });
+}
+
+void begin_potential(benchmark::State& state) {
+    IncrementalPotential potential(recording().garment);
+    for_moments(state, [&](const Moment& moment) {
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+    });
+}
+
+void energy_gradient(benchmark::State& state) {
+    IncrementalPotential potential(recording().garment);
+    Points gradient;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        state.ResumeTiming();
+        benchmark::DoNotOptimize(potential.value_gradient(moment.guess, gradient));
+    });
+}
+
+template <class Energy>
+void elastic(benchmark::State& state) {
+    const Energy energy(recording().garment);
+    Points gradient = Points::Zero(recording().garment.vertex_count(), 3);
+    for_moments(state, [&](const Moment& moment) {
+        benchmark::DoNotOptimize(energy.add_gradient(moment.guess, gradient));
+    });
+}
+
+/// One solve of three right-hand sides with the constant matrix.
+void matrix_solve(benchmark::State& state) {
+    QuasiNewtonMatrix matrix(recording().garment);
+    matrix.prepare(recording().garment, dt);
+    Points out;
+    for_moments(state, [&](const Moment& moment) { matrix.solve(moment.guess, out); });
+}
+
+/// One with contact in the matrix.
+void contact_solve(benchmark::State& state) {
+    const Garment& garment = recording().garment;
+    IncrementalPotential potential(garment);
+    QuasiNewtonMatrix matrix(garment);
+    ContactHessian contacts;
+    Points gradient, out;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        potential.value_gradient(moment.guess, gradient);
+        gradient = -gradient;
+        matrix.prepare(garment, dt);
+        contacts.begin_step(potential, matrix.row_of());
+        matrix.deflate(moment.guess);
+        contacts.linearise(potential, moment.guess);
+        state.ResumeTiming();
+        matrix.solve(gradient, contacts, QuasiNewtonSettings().contact_cg_iterations, out);
+    });
+}
+
+template <int iterations>
+void minimise(benchmark::State& state) {
+    IncrementalPotential potential(recording().garment);
+    QuasiNewton solver(recording().garment, IterationLimits::exactly(iterations));
+    Points x;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        x = moment.guess;
+        state.ResumeTiming();
+        solver.minimise(potential, x);
+    });
+}
+
+struct SmallNetwork {
+    Engine engine;
+    ClothGraph graph;
+    FeatureBuilder builder;
+
+    SmallNetwork()
+        : engine(Weights::load(asset_path("weights/small.safetensors"))),
+          graph(build_cloth_graph(recording().garment, engine.config().graph_settings())),
+          builder(recording().garment, graph, engine.config().features) {}
+};
+
+void features(benchmark::State& state) {
+    SmallNetwork small;
+    IncrementalPotential potential(recording().garment);
+    Features features;
+    PotentialValue at_guess;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        state.ResumeTiming();
+        small.builder.build(moment.state, moment.boundary, potential, moment.guess, features,
+                            &at_guess);
+    });
+}
+
+void network(benchmark::State& state) {
+    SmallNetwork small;
+    IncrementalPotential potential(recording().garment);
+    Features features;
+    Points out;
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        small.builder.build(moment.state, moment.boundary, potential, moment.guess, features);
+        state.ResumeTiming();
+        small.engine.predict(small.graph, features, out);
+    });
+}
+
+/// Whole steps, one after the other: the cloth goes its own way through the recorded frames.
+/// @tparam iterations  after the network, or alone
+template <bool learned, int iterations>
+void whole_step(benchmark::State& state) {
+    ClothSettings settings;
+    settings.step.quasi_newton = IterationLimits::exactly(iterations);
+    settings.guard.max_substeps = 1;
+    if (learned)
+        settings.weights = std::make_shared<const EngineWeights>(
+            Weights::load(asset_path("weights/small.safetensors")));
+    const auto stepper = make_cloth(recording().garment, settings);
+    ClothState cloth;
+    for_moments(state, [&](const Moment& moment) {
+        if (&moment == &recording().moments.front()) cloth = moment.state;
+        stepper->step(moment.boundary, dt, cloth);
+    });
+}
+
+#define STAGE(...) \
+    BENCHMARK(__VA_ARGS__)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMicrosecond)
+STAGE(fit_trees);
+STAGE(nearest_points);
+STAGE(contact_projection);
+STAGE(ridges);
+STAGE(begin_potential);
+STAGE(energy_gradient);
+STAGE(elastic<StrainEnergy>);
+STAGE(elastic<BendingEnergy>);
+STAGE(matrix_solve);
+STAGE(contact_solve);
+STAGE(minimise<3>);
+STAGE(minimise<10>);
+STAGE(features);
+STAGE(network);
+STAGE(whole_step<false, 3>);
+STAGE(whole_step<false, 10>);
+STAGE(whole_step<true, 3>);
+
+}  // namespace
+}  // namespace cloth::test
+
+int main(int count, char** arguments) {
+    benchmark::Initialize(&count, arguments);
+    if (benchmark::ReportUnrecognizedArguments(count, arguments)) return 1;
+    benchmark::AddCustomContext("commit", cloth::build_commit());
+    benchmark::AddCustomContext("machine", cloth::machine_name());
+    benchmark::AddCustomContext("threads", "1 and 2");
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}
