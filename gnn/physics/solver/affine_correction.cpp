@@ -1,6 +1,29 @@
 #include "gnn/physics/solver/affine_correction.h"
 
 namespace cloth {
+namespace {
+
+using Lanes = double __attribute__((vector_size(32)));  // x, y, z and a spare lane
+
+Lanes load(const double* p) {
+    return Lanes{p[0], p[1], p[2], 0.0};
+}
+
+/// out = a + scale out - fields c, row by row.
+void add_rows(const Points& a, double scale, const AffineFields::Columns& fields,
+              const AffineFields::Coefficients& c, Points& out) {
+    Lanes rows[AffineFields::count];
+    for (int k = 0; k < AffineFields::count; ++k) rows[k] = load(c.row(k).data());
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        double* const to = out.data() + 3 * i;
+        const double* const f = fields.data() + AffineFields::count * i;
+        Lanes sum = load(a.data() + 3 * i) + scale * load(to);
+        for (int k = 0; k < AffineFields::count; ++k) sum -= f[k] * rows[k];
+        for (int k = 0; k < 3; ++k) to[k] = sum[k];
+    }
+}
+
+}  // namespace
 
 void AffineCorrection::take(const Points& x, const Eigen::SparseMatrix<double>& laplacian,
                             double stiffness, const VectorX& masses, double rate) {
@@ -37,11 +60,15 @@ void AffineCorrection::solve(const Points& b, Points& x, Points& p_x) const {
     p_x.noalias() = m_p_columns.lazyProduct(c);
 }
 
-void AffineCorrection::make_conjugate(const Points& product, Points& direction,
-                                      Points& p_direction) const {
-    const AffineFields::Coefficients c = coefficients(m_fields.moments(product));
-    direction.noalias() -= m_fields.columns().lazyProduct(c);
-    p_direction.noalias() -= m_p_columns.lazyProduct(c);
+void AffineCorrection::add_conjugate(const ContactHessian& contacts, const Points& z,
+                                     const Points& residual, double beta, Points& direction,
+                                     Points& p_direction) const {
+    // F' A z = F' residual + F' blocks z, and the residual has no affine part
+    AffineFields::Coefficients moments = AffineFields::Coefficients::Zero();
+    contacts.add_moments(m_fields, z, moments);
+    const AffineFields::Coefficients c = coefficients(moments);
+    add_rows(z, beta, m_fields.columns(), c, direction);
+    add_rows(residual, beta, m_p_columns, c, p_direction);
 }
 
 }  // namespace cloth

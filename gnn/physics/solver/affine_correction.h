@@ -25,8 +25,11 @@ class AffineCorrection {
     /// x = F (F' A F)^-1 F' b, p_x = P x.
     void solve(const Points& b, Points& x, Points& p_x) const;
 
-    /// direction -= F (F' A F)^-1 F' (A direction), and P times that. @param product  A direction
-    void make_conjugate(const Points& product, Points& direction, Points& p_direction) const;
+    /// direction = z + beta direction - F c, and P times that, with c so that A times the new
+    /// direction has no affine part. The direction before has none, nor has the residual.
+    /// @param z         P^-1 residual
+    void add_conjugate(const ContactHessian& contacts, const Points& z, const Points& residual,
+                       double beta, Points& direction, Points& p_direction) const;
 
  private:
     AffineFields::Coefficients coefficients(const AffineFields::Coefficients& moments) const;

@@ -40,10 +40,13 @@ AffineFields::Coefficients AffineFields::moments(const Points& a) const {
     return sum;
 }
 
-void AffineFields::add_isotropic(const Weights& weights, System& system) {
+void AffineFields::add(const Weights& weights, int row, int column, System& system) {
     for (int i = 0; i < count; ++i)
-        for (int j = 0; j < count; ++j)
-            for (int d = 0; d < 3; ++d) system(3 * i + d, 3 * j + d) += weights(i, j);
+        for (int j = 0; j < count; ++j) system(3 * i + row, 3 * j + column) += weights(i, j);
+}
+
+void AffineFields::add_isotropic(const Weights& weights, System& system) {
+    for (int d = 0; d < 3; ++d) add(weights, d, d, system);
 }
 
 }  // namespace cloth

@@ -30,7 +30,9 @@ class AffineFields {
     /// F' a, for a of n x 3.
     Coefficients moments(const Points& a) const;
 
-    /// system += weights for each of the three directions.
+    /// system += weights for what the fields in direction `column` do to those in direction `row`.
+    static void add(const Weights& weights, int row, int column, System& system);
+    /// The same for each of the three directions with itself.
     static void add_isotropic(const Weights& weights, System& system);
 
  private:

@@ -136,39 +136,57 @@ double ContactHessian::rise(const Ridge& ridge, const Points& step) {
     return rise;
 }
 
-void ContactHessian::add_product(const Points& direction, Points& product) const {
+template <class Visit>
+void ContactHessian::for_each_force(const Points& direction, const Visit& visit) const {
     for (const Contact& contact : m_contacts) {
         if (contact.stiffness == 0.0) continue;
         const double along = direction.row(contact.row).dot(contact.normal);
-        product.row(contact.row) += (contact.stiffness * along) * contact.normal.transpose();
+        visit(contact.row, (contact.stiffness * along) * contact.normal);
     }
     for (const Ridge& ridge : m_ridges) {
         if (ridge.stiffness == 0.0) continue;
         const Vec3 force = ridge.stiffness * rise(ridge, direction) * ridge.normal;
-        for (size_t k = 0; k < 3; ++k)
-            product.row(ridge.row[k]) += ridge.weight[k] * force.transpose();
+        for (size_t k = 0; k < 3; ++k) visit(ridge.row[k], ridge.weight[k] * force);
     }
     for (const Slider& slider : m_sliders) {
         const Vec3 motion = direction.row(slider.row);
         const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
-        product.row(slider.row) += slider.stiffness * tangential.transpose();
+        visit(slider.row, slider.stiffness * tangential);
     }
     for (const SelfContact& contact : m_self_contacts) {
         if (contact.stiffness == 0.0) continue;
-        const Eigen::RowVector3d force =
-            contact.stiffness * contact.along(direction) * contact.normal.transpose();
+        const Vec3 force = contact.stiffness * contact.along(direction) * contact.normal;
         for (size_t k = 0; k < 4; ++k)
-            if (contact.weight[k] != 0.0) product.row(contact.row[k]) += contact.weight[k] * force;
+            if (contact.weight[k] != 0.0) visit(contact.row[k], contact.weight[k] * force);
     }
+}
+
+void ContactHessian::add_product(const Points& direction, Points& product) const {
+    for_each_force(direction,
+                   [&](int row, const Vec3& force) { product.row(row) += force.transpose(); });
+}
+
+void ContactHessian::add_moments(const AffineFields& fields, const Points& direction,
+                                 AffineFields::Coefficients& moments) const {
+    Eigen::Matrix<double, AffineFields::count, 3> sum;  // column-major: one product per column
+    sum.setZero();
+    for_each_force(direction, [&](int row, const Vec3& force) {
+        const AffineFields::Row f = fields.at(row);
+        for (int k = 0; k < 3; ++k) sum.col(k) += force[k] * f;
+    });
+    moments += sum;
 }
 
 void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& system) const {
     using Row = AffineFields::Row;
-    // stiffness (f x n)(f x n)', f: how far each field moves the point
+    // stiffness (f x n)(f x n)' = stiffness (n n') x (f f'), f: how far each field moves the point
+    AffineFields::Weights sums[3][3];
+    for (auto& row : sums)
+        for (AffineFields::Weights& sum : row) sum.setZero();
     const auto add = [&](const Row& f, const Vec3& n, double stiffness) {
-        AffineFields::Vector motion;
-        for (int k = 0; k < AffineFields::count; ++k) motion.segment<3>(3 * k) = f[k] * n;
-        system.noalias() += stiffness * motion * motion.transpose();
+        const AffineFields::Weights weights = f * f.transpose();
+        for (int i = 0; i < 3; ++i)
+            for (int j = i; j < 3; ++j) sums[i][j] += (stiffness * n[i] * n[j]) * weights;
     };
     const auto combined = [&](const auto& row, const auto& weight) {
         Row f = Row::Zero();
@@ -190,6 +208,9 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
         sliding.noalias() += slider.stiffness * f * f.transpose();
         add(f, slider.normal, -slider.stiffness);
     }
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            AffineFields::add(sums[std::min(i, j)][std::max(i, j)], i, j, system);
     AffineFields::add_isotropic(sliding, system);
 }
 

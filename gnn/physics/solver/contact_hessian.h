@@ -39,6 +39,10 @@ class ContactHessian {
     /// product += blocks * direction (free, n x 3).
     void add_product(const Points& direction, Points& product) const;
 
+    /// moments += F' blocks * direction, F: fields of the free vertices.
+    void add_moments(const AffineFields& fields, const Points& direction,
+                     AffineFields::Coefficients& moments) const;
+
     /// system += F' blocks F, F: fields of the free vertices.
     void add_to(const AffineFields& fields, AffineFields::System& system) const;
 
@@ -85,6 +89,9 @@ class ContactHessian {
         double along(const Points& direction) const;  ///< of a free array (n x 3)
     };
 
+    /// visit(free row, force) for the parts of blocks * direction.
+    template <class Visit>
+    void for_each_force(const Points& direction, const Visit& visit) const;
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);

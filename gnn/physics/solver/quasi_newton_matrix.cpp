@@ -10,6 +10,10 @@ namespace {
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
+// Largest diagonal entry over least inertia of matrices that single precision solves to 1e-3: what
+// a solve leaves of a smooth force is rounding (6e-8) times this.
+constexpr double most_stiffness = 5e4;
+
 bool same_fabric(const Fabric& a, const Fabric& b) {
     return a.density == b.density && a.mu == b.mu && a.lambda == b.lambda;
 }
@@ -42,20 +46,43 @@ Eigen::SparseMatrix<double> cotangent_laplacian(const TriMesh& rest) {
 
 QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
     : m_vertex_count(garment.vertex_count()), m_pins(garment.pins()) {
+    const Eigen::SparseMatrix<double> laplacian = cotangent_laplacian(garment.rest());
+    number_free_vertices(garment, laplacian);
     Triplets selection;
-    m_row_of.assign(static_cast<size_t>(m_vertex_count), -1);
-    for (int vertex = 0; vertex < m_vertex_count; ++vertex) {
-        if (garment.is_pinned()[static_cast<size_t>(vertex)]) continue;
-        m_row_of[static_cast<size_t>(vertex)] = static_cast<int>(m_free.size());
-        selection.emplace_back(static_cast<int>(m_free.size()), vertex, 1.0);
-        m_free.push_back(vertex);
-    }
+    for (size_t row = 0; row < m_free.size(); ++row)
+        selection.emplace_back(static_cast<int>(row), m_free[row], 1.0);
     Eigen::SparseMatrix<double> select(free_count(), m_vertex_count);
     select.setFromTriplets(selection.begin(), selection.end());
     m_masses.resize(free_count());
-    m_laplacian = select * cotangent_laplacian(garment.rest()) * select.transpose();
+    m_laplacian = select * laplacian * select.transpose();
     for (Points* array : {&m_residual, &m_preconditioned, &m_direction, &m_product, &m_p_direction})
         array->resize(free_count(), 3);
+}
+
+/// In the order in which the factor eliminates them, so that a solve need not change the order.
+void QuasiNewtonMatrix::number_free_vertices(const Garment& garment,
+                                             const Eigen::SparseMatrix<double>& laplacian) {
+    m_row_of.assign(static_cast<size_t>(m_vertex_count), -1);
+    for (const int vertex : elimination_order(laplacian)) {
+        if (garment.is_pinned()[static_cast<size_t>(vertex)]) continue;
+        m_row_of[static_cast<size_t>(vertex)] = static_cast<int>(m_free.size());
+        m_free.push_back(vertex);
+    }
+}
+
+bool QuasiNewtonMatrix::Factor::factorise(const Eigen::SparseMatrix<double>& matrix,
+                                          double mean_inertia) {
+    if (!exact.factorise(matrix)) return false;
+    if (matrix.diagonal().maxCoeff() <= most_stiffness * mean_inertia) fast.factorise(matrix);
+    return true;
+}
+
+void QuasiNewtonMatrix::precondition(const Points& b, Points& out) const {
+    const Factor& factor = m_factors.front();
+    if (factor.fast.size() > 0)
+        factor.fast.solve(b, out);
+    else
+        factor.exact.solve(b, out);
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
@@ -71,9 +98,11 @@ bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
     for (Eigen::Index row = 0; row < free_count(); ++row)
         m_masses[row] = garment.masses()[m_free[static_cast<size_t>(row)]];
     if (m_factors.size() == max_factors) m_factors.pop_back();
-    m_factors.push_front({dt, {}});
+    m_factors.push_front({dt, {}, {}});
     ++m_factorisations;
-    if (free_count() == 0 || m_factors.front().factor.factorise(assembled(dt))) return true;
+    if (free_count() == 0 ||
+        m_factors.front().factorise(assembled(dt), m_masses.mean() / (dt * dt)))
+        return true;
     m_factors.pop_front();
     return false;
 }
@@ -127,11 +156,8 @@ void QuasiNewtonMatrix::deflate(const Points& x) {
 void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int iterations,
                               Points& out) const {
     m_residual = b;
-    solve(m_residual, m_preconditioned);
-    if (!contacts.anticipate(m_preconditioned)) {
-        out = m_preconditioned;
-        return;
-    }
+    precondition(m_residual, m_preconditioned);
+    if (!contacts.anticipate(m_preconditioned)) return solve(b, out);
     double power = dot(m_residual, m_preconditioned);
     const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
     const bool deflated = m_deflated && m_affine.factorise(contacts);
@@ -139,32 +165,33 @@ void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int ite
         m_affine.solve(b, out, m_product);
         contacts.add_product(out, m_product);
         m_residual -= m_product;
-        solve(m_residual, m_preconditioned);
+        precondition(m_residual, m_preconditioned);
         power = dot(m_residual, m_preconditioned);
     } else {
         out.setZero(b.rows(), 3);
     }
-    m_direction = m_preconditioned;
+    m_direction.setZero(b.rows(), 3);
     // P times the direction follows from the residuals, so that P itself is never multiplied.
-    m_p_direction = m_residual;
+    m_p_direction.setZero(b.rows(), 3);
+    double beta = 0.0;
     for (int k = 0; power > enough; ++k) {
+        if (deflated) {
+            m_affine.add_conjugate(contacts, m_preconditioned, m_residual, beta, m_direction,
+                                   m_p_direction);
+        } else {
+            m_direction = m_preconditioned + beta * m_direction;
+            m_p_direction = m_residual + beta * m_p_direction;
+        }
         m_product = m_p_direction;
         contacts.add_product(m_direction, m_product);
-        if (deflated) {
-            m_affine.make_conjugate(m_product, m_direction, m_p_direction);
-            m_product = m_p_direction;
-            contacts.add_product(m_direction, m_product);
-        }
         const double step = power / dot(m_direction, m_product);
         out += step * m_direction;
         if (k + 1 >= iterations) break;
         m_residual -= step * m_product;
-        solve(m_residual, m_preconditioned);
+        precondition(m_residual, m_preconditioned);
         const double next_power = dot(m_residual, m_preconditioned);
-        const double beta = next_power / power;
+        beta = next_power / power;
         power = next_power;
-        m_direction = m_preconditioned + beta * m_direction;
-        m_p_direction = m_residual + beta * m_p_direction;
     }
 }
 

@@ -43,15 +43,16 @@ class QuasiNewtonMatrix {
     void add_scaled(double scale, const Points& free, Points& all) const;
 
     /// out = P^-1 b (free).
-    void solve(const Points& b, Points& out) const { m_factors.front().factor.solve(b, out); }
+    void solve(const Points& b, Points& out) const { m_factors.front().exact.solve(b, out); }
 
     /// Until the next `prepare`, solves with contact blocks find the affine displacements of the
     /// vertices at x (|V| x 3, m) directly.
     void deflate(const Points& x);
 
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
-    /// preconditioned by P. They cost as many solves with P, and one more after `deflate`. The
-    /// blocks anticipate the step P^-1 b.
+    /// preconditioned by P, of soft fabrics in single precision, to which the answer is exact. They
+    /// cost as many solves with P, and one more after `deflate`. The blocks anticipate the step
+    /// P^-1 b.
     void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
 
     const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
@@ -61,8 +62,15 @@ class QuasiNewtonMatrix {
  private:
     struct Factor {
         double dt;  ///< (s)
-        SupernodalCholesky factor;
+        SupernodalCholesky<double> exact;
+        SupernodalCholesky<float>
+            fast;  ///< as a preconditioner; empty where it is not exact enough
+
+        bool factorise(const Eigen::SparseMatrix<double>& matrix, double mean_inertia);
     };
+    /// out = P^-1 b, to single precision where that suffices.
+    void precondition(const Points& b, Points& out) const;
+    void number_free_vertices(const Garment& garment, const Eigen::SparseMatrix<double>& laplacian);
     Eigen::SparseMatrix<double> assembled(double dt) const;
 
     Eigen::Index m_vertex_count;

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <cstring>
+#include <type_traits>
 
 namespace cloth {
 namespace {
@@ -9,63 +10,75 @@ namespace {
 constexpr int max_width = 8;          // columns of a panel: their y stay in eight vector registers
 constexpr double max_padding = 0.25;  // share of explicit zeros that is cheaper than another panel
 
-// x, y, z and a spare lane. Loads and stores go through memcpy: the memory is only 8-aligned.
-using Lanes = double __attribute__((vector_size(32)));
+// x, y, z and a spare lane. Loads and stores go through memcpy: the memory is aligned for one lane.
+using FloatLanes = float __attribute__((vector_size(16)));
+using DoubleLanes = double __attribute__((vector_size(32)));
+template <class Real>
+using Lanes = std::conditional_t<std::is_same_v<Real, float>, FloatLanes, DoubleLanes>;
 
-inline Lanes load(const double* p) {
-    Lanes v;
+template <class Real>
+inline Lanes<Real> load(const Real* p) {
+    Lanes<Real> v;
     std::memcpy(&v, p, sizeof(v));
     return v;
 }
 
-inline void store(double* p, const Lanes& v) {
+template <class Real>
+inline void store(Real* p, const Lanes<Real>& v) {
     std::memcpy(p, &v, sizeof(v));
 }
 
 // y = T^-1 y within the panel's columns, then work[row] -= B y for the rows below.
-template <int W>
-void eliminate(const double* values, const int* rows, int row_count, double* own, double* work) {
-    Lanes y[W];
+template <class Real, int W>
+void eliminate(const Real* values, const int* rows, int row_count, Real* own, Real* work) {
+    Lanes<Real> y[W];
     for (int c = 0; c < W; ++c) y[c] = load(own + 4 * c);
     for (int r = 0; r < W; ++r, values += W) {
         for (int c = 0; c < r; ++c) y[r] -= values[c] * y[c];
         y[r] *= values[r];
-        store(own + 4 * r, y[r]);
+        store<Real>(own + 4 * r, y[r]);
     }
     for (int i = 0; i < row_count; ++i, values += W) {
-        double* target = work + 4 * static_cast<size_t>(rows[i]);
-        Lanes sum = load(target);
+        Real* target = work + 4 * static_cast<size_t>(rows[i]);
+        Lanes<Real> sum = load(target);
         for (int c = 0; c < W; ++c) sum -= values[c] * y[c];
-        store(target, sum);
+        store<Real>(target, sum);
     }
 }
 
 // y = T^-T (y - B^T work[rows]).
-template <int W>
-void substitute_back(const double* values, const int* rows, int row_count, double* own,
-                     const double* work) {
-    Lanes y[W];
+template <class Real, int W>
+void substitute_back(const Real* values, const int* rows, int row_count, Real* own,
+                     const Real* work) {
+    Lanes<Real> y[W];
     for (int c = 0; c < W; ++c) y[c] = load(own + 4 * c);
-    const double* below = values + W * W;
+    const Real* below = values + W * W;
     for (int i = 0; i < row_count; ++i, below += W) {
-        const Lanes known = load(work + 4 * static_cast<size_t>(rows[i]));
+        const Lanes<Real> known = load(work + 4 * static_cast<size_t>(rows[i]));
         for (int c = 0; c < W; ++c) y[c] -= below[c] * known;
     }
     for (int r = W - 1; r >= 0; --r) {
-        const double* row = values + W * r;
+        const Real* row = values + W * r;
         y[r] *= row[r];
-        store(own + 4 * r, y[r]);
+        store<Real>(own + 4 * r, y[r]);
         for (int c = 0; c < r; ++c) y[c] -= row[c] * y[r];
     }
 }
 
-using Eliminate = void (*)(const double*, const int*, int, double*, double*);
-using SubstituteBack = void (*)(const double*, const int*, int, double*, const double*);
-constexpr Eliminate eliminate_of_width[] = {eliminate<1>, eliminate<2>, eliminate<3>, eliminate<4>,
-                                            eliminate<5>, eliminate<6>, eliminate<7>, eliminate<8>};
-constexpr SubstituteBack substitute_back_of_width[] = {
-    substitute_back<1>, substitute_back<2>, substitute_back<3>, substitute_back<4>,
-    substitute_back<5>, substitute_back<6>, substitute_back<7>, substitute_back<8>};
+template <class Real>
+struct OfWidth {
+    using Eliminate = void (*)(const Real*, const int*, int, Real*, Real*);
+    using SubstituteBack = void (*)(const Real*, const int*, int, Real*, const Real*);
+    static constexpr Eliminate eliminate[] = {cloth::eliminate<Real, 1>, cloth::eliminate<Real, 2>,
+                                              cloth::eliminate<Real, 3>, cloth::eliminate<Real, 4>,
+                                              cloth::eliminate<Real, 5>, cloth::eliminate<Real, 6>,
+                                              cloth::eliminate<Real, 7>, cloth::eliminate<Real, 8>};
+    static constexpr SubstituteBack substitute_back[] = {
+        cloth::substitute_back<Real, 1>, cloth::substitute_back<Real, 2>,
+        cloth::substitute_back<Real, 3>, cloth::substitute_back<Real, 4>,
+        cloth::substitute_back<Real, 5>, cloth::substitute_back<Real, 6>,
+        cloth::substitute_back<Real, 7>, cloth::substitute_back<Real, 8>};
+};
 
 int column_count(const Eigen::SparseMatrix<double>& lower, int column) {
     return lower.outerIndexPtr()[column + 1] - lower.outerIndexPtr()[column];
@@ -98,17 +111,26 @@ int panel_width(const Eigen::SparseMatrix<double>& lower, int first) {
 
 }  // namespace
 
-bool SupernodalCholesky::factorise(const Eigen::SparseMatrix<double>& matrix) {
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>> cholesky(matrix);
+std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix) {
+    Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
+    Eigen::AMDOrdering<int>()(matrix, permutation);
+    const auto& order = permutation.indices();
+    return {order.data(), order.data() + order.size()};
+}
+
+template <class Real>
+bool SupernodalCholesky<Real>::factorise(const Eigen::SparseMatrix<double>& matrix) {
+    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
+        cholesky(matrix);
     if (cholesky.info() != Eigen::Success) return false;
-    const auto& order = cholesky.permutationP().indices();
-    m_position.assign(order.data(), order.data() + order.size());
+    m_size = matrix.rows();
     build_panels(Eigen::SparseMatrix<double>(cholesky.matrixL()));
-    m_work.assign(4 * m_position.size(), 0.0);
+    m_work.assign(4 * static_cast<size_t>(m_size), Real(0));
     return true;
 }
 
-void SupernodalCholesky::build_panels(const Eigen::SparseMatrix<double>& lower) {
+template <class Real>
+void SupernodalCholesky<Real>::build_panels(const Eigen::SparseMatrix<double>& lower) {
     m_panels.clear();
     m_rows.clear();
     m_values.clear();
@@ -117,15 +139,16 @@ void SupernodalCholesky::build_panels(const Eigen::SparseMatrix<double>& lower) 
         append_panel(lower, first, panel_width(lower, first));
 }
 
-void SupernodalCholesky::append_panel(const Eigen::SparseMatrix<double>& lower, int first,
-                                      int width) {
+template <class Real>
+void SupernodalCholesky<Real>::append_panel(const Eigen::SparseMatrix<double>& lower, int first,
+                                            int width) {
     const int last = first + width - 1;
     const int* begin = lower.innerIndexPtr() + lower.outerIndexPtr()[last] + 1;
     const int row_count = column_count(lower, last) - 1;
     m_panels.push_back({first, width, row_count, m_rows.size(), m_values.size()});
     m_rows.insert(m_rows.end(), begin, begin + row_count);
-    m_values.resize(m_values.size() + static_cast<size_t>(width) * (width + row_count), 0.0);
-    double* values = m_values.data() + m_panels.back().values_begin;
+    m_values.resize(m_values.size() + static_cast<size_t>(width) * (width + row_count), Real(0));
+    Real* values = m_values.data() + m_panels.back().values_begin;
     for (int c = 0; c < width; ++c) {
         int below = 0;
         for (Eigen::SparseMatrix<double>::InnerIterator it(lower, first + c); it; ++it) {
@@ -135,26 +158,32 @@ void SupernodalCholesky::append_panel(const Eigen::SparseMatrix<double>& lower, 
                 while (begin[below] != row) ++below;
                 place = width + below;
             }
-            values[place * width + c] = row == first + c ? 1.0 / it.value() : it.value();
+            values[place * width + c] =
+                static_cast<Real>(row == first + c ? 1.0 / it.value() : it.value());
         }
     }
 }
 
-void SupernodalCholesky::solve(const Points& b, Points& x) const {
-    double* work = m_work.data();
-    for (size_t i = 0; i < m_position.size(); ++i)
-        std::memcpy(work + 4 * m_position[i], b.data() + 3 * i, 3 * sizeof(double));
+template <class Real>
+void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
+    Real* work = m_work.data();
+    const auto count = static_cast<size_t>(m_size);
+    for (size_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 3; ++k) work[4 * i + k] = static_cast<Real>(b.data()[3 * i + k]);
     for (const Panel& panel : m_panels)
-        eliminate_of_width[panel.width - 1](m_values.data() + panel.values_begin,
-                                            m_rows.data() + panel.rows_begin, panel.row_count,
-                                            work + 4 * panel.first, work);
+        OfWidth<Real>::eliminate[panel.width - 1](m_values.data() + panel.values_begin,
+                                                  m_rows.data() + panel.rows_begin, panel.row_count,
+                                                  work + 4 * panel.first, work);
     for (auto panel = m_panels.rbegin(); panel != m_panels.rend(); ++panel)
-        substitute_back_of_width[panel->width - 1](m_values.data() + panel->values_begin,
-                                                   m_rows.data() + panel->rows_begin,
-                                                   panel->row_count, work + 4 * panel->first, work);
+        OfWidth<Real>::substitute_back[panel->width - 1](
+            m_values.data() + panel->values_begin, m_rows.data() + panel->rows_begin,
+            panel->row_count, work + 4 * panel->first, work);
     x.resize(b.rows(), 3);
-    for (size_t i = 0; i < m_position.size(); ++i)
-        std::memcpy(x.data() + 3 * i, work + 4 * m_position[i], 3 * sizeof(double));
+    for (size_t i = 0; i < count; ++i)
+        for (size_t k = 0; k < 3; ++k) x.data()[3 * i + k] = double(work[4 * i + k]);
 }
+
+template class SupernodalCholesky<float>;
+template class SupernodalCholesky<double>;
 
 }  // namespace cloth

@@ -136,7 +136,8 @@ TEST(AffineCorrection, ResidualsHaveNoAffinePartAfterAnyNumberOfIterations) {
         pressed.matrix.solve(b, pressed.contacts, iterations, x);
         const Points residual = b - pressed.product(x);
         EXPECT_GT(residual.norm(), 1e-4 * b.norm()) << "not solved yet";
-        EXPECT_LE(pressed.affine_part(residual), 1e-8 * pressed.affine_part(b)) << iterations;
+        EXPECT_LE(pressed.affine_part(residual), 1e-5 * pressed.affine_part(b))
+            << iterations << ", but for single precision";
     }
 }
 
