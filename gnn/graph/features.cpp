@@ -9,6 +9,8 @@ namespace cloth {
 
 namespace {
 
+constexpr int enough_rows = 2000;  // to be worth waking threads for
+
 /// Grows like u for small and like sqrt(u) for large arguments: contact and stiff cloth give forces
 /// over many decades.
 Vec3 squash(const Vec3& u) {
@@ -49,6 +51,9 @@ FeatureBuilder::FeatureBuilder(const Garment& garment, const ClothGraph& graph,
       m_settings(settings),
       m_material(scaled_material(garment.fabric())) {
     check_range("FeatureSettings.world_radius", settings.world_radius, 1e-3, 1.0);
+    const auto log = [](double value) { return bounded(std::log(value)); };
+    m_log_mass = garment.masses().unaryExpr(log);
+    m_log_rest_length = graph.rest_length.unaryExpr(log);
 }
 
 bool FeatureBuilder::build(const ClothState& state, const Boundary& boundary,
@@ -71,6 +76,7 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
     features.node.resize(count, feature_count(node_layout(m_settings.force_features)));
     const bool any_contacts = !potential.contacts().obstacle.empty();
     vertex_normals(state.x, m_garment->rest().faces, m_normals);
+#pragma omp parallel for if (count >= enough_rows)
     for (Eigen::Index i = 0; i < count; ++i) {
         const bool pinned = m_garment->is_pinned()[static_cast<size_t>(i)];
         const Vec3 x = state.x.row(i), base = features.base.row(i);
@@ -84,7 +90,7 @@ void FeatureBuilder::build_nodes(const ClothState& state, const Boundary& bounda
         put<NodeFeature::acceleration>(features.node, i, Vec3(per_metre * dt * dt * acceleration));
         put<NodeFeature::projection>(
             features.node, i, pinned ? Vec3::Zero() : squash(per_metre * (base - x - velocity)));
-        put<NodeFeature::log_mass>(features.node, i, std::log(m_garment->masses()[i]));
+        put<NodeFeature::log_mass>(features.node, i, m_log_mass[i]);
         put<NodeFeature::pinned>(features.node, i, pinned ? 1.0 : 0.0);
         put<NodeFeature::material>(features.node, i, m_material);
         const bool near = any_contacts && potential.contacts().has(i) &&
@@ -102,18 +108,15 @@ void FeatureBuilder::build_forces(const ClothState& state, const IncrementalPote
         return squash(-dt * dt * per_metre / masses[i] * gradient.row(i).transpose());
     };
     const Eigen::Index count = state.x.rows();
-    potential.elastic_gradient(state.x, m_gradient);
-    for (Eigen::Index i = 0; i < count; ++i)
-        put<NodeFeature::elastic_now>(features.node, i, displacement(m_gradient, i));
-    potential.elastic_gradient(features.base, m_gradient);
-    for (Eigen::Index i = 0; i < count; ++i)
-        put<NodeFeature::elastic_base>(features.node, i, displacement(m_gradient, i));
-    at_base.energy = potential.value_gradient(features.base, at_base.gradient);
+    potential.elastic_gradient(state.x, m_elastic_now);
+    at_base.energy = potential.value_gradient(features.base, at_base.gradient, &m_elastic_base);
     const Points& gradient = at_base.gradient;
-    for (Eigen::Index i = 0; i < count; ++i)
+#pragma omp parallel for if (count >= enough_rows)
+    for (Eigen::Index i = 0; i < count; ++i) {
+        put<NodeFeature::elastic_now>(features.node, i, displacement(m_elastic_now, i));
+        put<NodeFeature::elastic_base>(features.node, i, displacement(m_elastic_base, i));
         put<NodeFeature::force_base>(features.node, i, displacement(gradient, i));
-    // The step of one Jacobi iteration of the quasi-Newton matrix M/dt^2 + (2 mu + lambda) L.
-    for (Eigen::Index i = 0; i < gradient.rows(); ++i) {
+        // The step of one Jacobi iteration of the quasi-Newton matrix M/dt^2 + (2 mu + lambda) L.
         const double diagonal =
             masses[i] / (dt * dt) + stiffness * std::max(0.0, m_graph->laplacian_diagonal[i]);
         put<NodeFeature::jacobi_base>(features.node, i,
@@ -123,6 +126,7 @@ void FeatureBuilder::build_forces(const ClothState& state, const IncrementalPote
 
 void FeatureBuilder::build_edges(const ClothState& state, Features& features) const {
     features.edge.resize(m_graph->edge_count(), feature_count(edge_layout()));
+#pragma omp parallel for if (m_graph->edge_count() >= enough_rows)
     for (int e = 0; e < m_graph->edge_count(); ++e) {
         const int i = m_graph->receivers[static_cast<size_t>(e)];
         const int j = m_graph->senders[static_cast<size_t>(e)];
@@ -133,7 +137,7 @@ void FeatureBuilder::build_edges(const ClothState& state, Features& features) co
         put<EdgeFeature::strain_now>(features.edge, e, now.norm() - 1.0);
         put<EdgeFeature::relative_base>(features.edge, e, next);
         put<EdgeFeature::strain_base>(features.edge, e, next.norm() - 1.0);
-        put<EdgeFeature::log_rest_length>(features.edge, e, std::log(rest));
+        put<EdgeFeature::log_rest_length>(features.edge, e, m_log_rest_length[e]);
     }
 }
 

@@ -61,8 +61,10 @@ class FeatureBuilder {
     const Garment* m_garment;
     const ClothGraph* m_graph;
     FeatureSettings m_settings;
-    Vec3 m_material;  ///< bending, mu, lambda scaled to [0, 1] over the training range
-    Points m_normals, m_gradient;
+    VectorF m_log_mass;         ///< |V|
+    VectorF m_log_rest_length;  ///< |E|
+    Vec3 m_material;            ///< bending, mu, lambda scaled to [0, 1] over the training range
+    Points m_normals, m_elastic_now, m_elastic_base;
     PotentialValue m_at_base;
 };
 

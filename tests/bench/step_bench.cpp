@@ -16,8 +16,7 @@
 #include "data/core/paths.h"
 #include "demos/provenance/provenance.h"
 #include "gnn/model/make_cloth.h"
-#include "gnn/physics/energy/bending.h"
-#include "gnn/physics/energy/strain.h"
+#include "gnn/physics/energy/elastic.h"
 #include "gnn/physics/solver/quasi_newton.h"
 #include "gnn/physics/stepper/guess.h"
 #include "tests/bench/network_scene.h"
@@ -154,6 +153,15 @@ void energy_gradient(benchmark::State& state) {
     });
 }
 
+void elastic_gradient(benchmark::State& state) {
+    const ElasticEnergy energy(recording().garment);
+    Points gradient;
+    for_moments(state, [&](const Moment& moment) {
+        benchmark::DoNotOptimize(energy.gradient(moment.guess, gradient));
+    });
+}
+
+/// On one thread, whatever the argument says.
 template <class Energy>
 void elastic(benchmark::State& state) {
     const Energy energy(recording().garment);
@@ -271,6 +279,7 @@ STAGE(contact_projection);
 STAGE(ridges);
 STAGE(begin_potential);
 STAGE(energy_gradient);
+STAGE(elastic_gradient);
 STAGE(elastic<StrainEnergy>);
 STAGE(elastic<BendingEnergy>);
 STAGE(matrix_solve);

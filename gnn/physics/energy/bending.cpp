@@ -71,14 +71,13 @@ BendingEnergy::BendingEnergy(const Garment& garment) : m_garment(&garment) {
 }
 
 template <bool with_gradient>
-double BendingEnergy::accumulate(const double* x, double* gradient) const {
+double BendingEnergy::accumulate(const double* x, int begin, int end, double* gradient) const {
     if (m_stiffness.empty()) return 0.0;
     HingeBlock block;
     const int* hinges = m_garment->hinges().front().data();
-    const int count = static_cast<int>(m_stiffness.size());
     double energy = 0.0;
-    for (int first = 0; first < count; first += HingeBlock::size) {
-        const int run = std::min(HingeBlock::size, count - first);
+    for (int first = begin; first < end; first += HingeBlock::size) {
+        const int run = std::min(HingeBlock::size, end - first);
         const HingeConstants constants = {
             &m_stiffness[first], &m_garment->hinge_rest_angles()[first], m_min_normal, m_min_edge};
         block.gather(x, hinges, first, run);
@@ -90,11 +89,16 @@ double BendingEnergy::accumulate(const double* x, double* gradient) const {
 }
 
 double BendingEnergy::value(const Points& x) const {
-    return accumulate<false>(x.data(), nullptr);
+    return accumulate<false>(x.data(), 0, count(), nullptr);
 }
 
 double BendingEnergy::add_gradient(const Points& x, Points& gradient) const {
-    return accumulate<true>(x.data(), gradient.data());
+    return accumulate<true>(x.data(), 0, count(), gradient.data());
+}
+
+double BendingEnergy::add_gradient(const Points& x, int part, int parts, Points& gradient) const {
+    return accumulate<true>(x.data(), HingeBlock::begin_of(part, parts, count()),
+                            HingeBlock::begin_of(part + 1, parts, count()), gradient.data());
 }
 
 namespace {

@@ -25,6 +25,8 @@ class BendingEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// The same for the hinges of one part of several, of equal size.
+    double add_gradient(const Points& x, int part, int parts, Points& gradient) const;
     /// Adds the Hessian (N/m) to the values of a matrix of `pattern`. Projected means Gauss-Newton:
     /// the part with the second derivative of the angle is left out.
     void add_hessian(const Points& x, const BlockPattern& pattern, HessianKind kind,
@@ -32,7 +34,8 @@ class BendingEnergy {
 
  private:
     template <bool with_gradient>
-    double accumulate(const double* x, double* gradient) const;
+    double accumulate(const double* x, int begin, int end, double* gradient) const;
+    int count() const { return static_cast<int>(m_stiffness.size()); }
 
     const Garment* m_garment;
     std::vector<double> m_stiffness;  ///< k l^2 / (4 (A0 + A1)) (J)

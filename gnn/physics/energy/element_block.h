@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace cloth {
 
 /// Work space for a run of elements (triangles, hinges) laid out coordinate by coordinate, so that
@@ -10,6 +12,12 @@ namespace cloth {
 template <int corners>
 struct ElementBlock {
     static constexpr int size = 64;  ///< elements per run: the block stays in the first-level cache
+
+    /// First element of a part of `count` elements: parts begin with a run.
+    static int begin_of(int part, int parts, int count) {
+        const int runs = (count + size - 1) / size;
+        return std::min(count, runs * part / parts * size);
+    }
 
     alignas(32) double x[3 * corners][size];  ///< positions (m), then the gradient (N) in place
     alignas(32) double energy[size];          ///< (J)

@@ -62,8 +62,7 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
     : m_garment(&garment),
       m_settings(settings),
       m_pattern(std::make_shared<const BlockPattern>(garment)),
-      m_strain(garment),
-      m_bending(garment),
+      m_elastic(garment),
       m_gravity(garment),
       m_inertia(garment),
       m_ridges(garment),
@@ -135,8 +134,9 @@ double IncrementalPotential::norm_of_forces_at(const ClothState& state) const {
 
 EnergyTerms IncrementalPotential::terms(const Points& x) const {
     EnergyTerms terms;
-    terms.strain = m_strain.value(x);
-    terms.bending = m_bending.value(x);
+    const ElasticEnergy::Terms elastic = m_elastic.value(x);
+    terms.strain = elastic.strain;
+    terms.bending = elastic.bending;
     terms.gravity = m_gravity.value(x);
     terms.inertia = m_inertia.value(x);
     terms.contact = m_contact.value(x, m_settings.contact_weight) +
@@ -150,11 +150,16 @@ double IncrementalPotential::value(const Points& x) const {
     return terms(x).total();
 }
 
-double IncrementalPotential::value_gradient(const Points& x, Points& gradient) const {
+double IncrementalPotential::value_gradient(const Points& x, Points& gradient,
+                                            Points* elastic) const {
+    const ElasticEnergy::Terms fabric = m_elastic.gradient(x, gradient);
     EnergyTerms terms;
-    gradient.setZero(x.rows(), 3);
-    terms.strain = m_strain.add_gradient(x, gradient);
-    terms.bending = m_bending.add_gradient(x, gradient);
+    terms.strain = fabric.strain;
+    terms.bending = fabric.bending;
+    if (elastic) {
+        *elastic = gradient;
+        mask_pins(*elastic);
+    }
     terms.gravity = m_gravity.add_gradient(x, gradient);
     terms.inertia = m_inertia.add_gradient(x, gradient);
     terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient) +
@@ -166,29 +171,25 @@ double IncrementalPotential::value_gradient(const Points& x, Points& gradient) c
 }
 
 void IncrementalPotential::elastic_gradient(const Points& x, Points& gradient) const {
-    gradient.setZero(x.rows(), 3);
-    m_strain.add_gradient(x, gradient);
-    m_bending.add_gradient(x, gradient);
+    m_elastic.gradient(x, gradient);
     mask_pins(gradient);
 }
 
 void IncrementalPotential::internal_forces(const Points& x, Points& forces) const {
-    forces.setZero(x.rows(), 3);
-    m_strain.add_gradient(x, forces);
-    m_bending.add_gradient(x, forces);
+    m_elastic.gradient(x, forces);
     forces = -forces;
 }
 
 double IncrementalPotential::internal_energy(const Points& x) const {
-    return m_strain.value(x) + m_bending.value(x);
+    const ElasticEnergy::Terms terms = m_elastic.value(x);
+    return terms.strain + terms.bending;
 }
 
 void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
                                    HessianKind kind) const {
     m_pattern->reset(hessian);
     double* values = hessian.valuePtr();
-    m_strain.add_hessian(x, *m_pattern, kind, values);
-    m_bending.add_hessian(x, *m_pattern, kind, values);
+    m_elastic.add_hessian(x, *m_pattern, kind, values);
     m_inertia.add_hessian(*m_pattern, values);
     m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
     m_ridges.add_hessian(x, m_settings.contact_weight, *m_pattern, values);

@@ -6,15 +6,14 @@
 #include "collision/proximity/proximity.h"
 #include "data/core/boundary.h"
 #include "data/core/cloth_state.h"
-#include "gnn/physics/energy/bending.h"
 #include "gnn/physics/energy/block_pattern.h"
 #include "gnn/physics/energy/contact.h"
+#include "gnn/physics/energy/elastic.h"
 #include "gnn/physics/energy/friction.h"
 #include "gnn/physics/energy/gravity.h"
 #include "gnn/physics/energy/inertia.h"
 #include "gnn/physics/energy/ridge_energy.h"
 #include "gnn/physics/energy/self_contact.h"
-#include "gnn/physics/energy/strain.h"
 
 namespace cloth {
 
@@ -79,7 +78,8 @@ class IncrementalPotential {
 
     EnergyTerms terms(const Points& x) const;
     double value(const Points& x) const;
-    double value_gradient(const Points& x, Points& gradient) const;
+    /// @param elastic  if not null, filled with elastic_gradient() at x
+    double value_gradient(const Points& x, Points& gradient, Points* elastic = nullptr) const;
     /// Hessian of E (3|V| x 3|V|, both triangles), by default with each element's block made
     /// positive semi-definite. The sparsity is the same for every x of a step, and without
     /// self-contact for every step: a matrix passed again is only refilled.
@@ -125,8 +125,7 @@ class IncrementalPotential {
     double m_force_scale = 0.0;
     SurfaceContacts m_contacts;
     std::shared_ptr<const BlockPattern> m_pattern;
-    StrainEnergy m_strain;
-    BendingEnergy m_bending;
+    ElasticEnergy m_elastic;
     GravityEnergy m_gravity;
     InertiaEnergy m_inertia;
     ContactEnergy m_contact;

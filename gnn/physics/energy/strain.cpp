@@ -75,13 +75,12 @@ StrainEnergy::StrainEnergy(const Garment& garment) : m_garment(&garment) {
 }
 
 template <bool with_gradient>
-double StrainEnergy::accumulate(const double* x, double* gradient) const {
+double StrainEnergy::accumulate(const double* x, int begin, int end, double* gradient) const {
     FaceBlock block;
     const int* faces = m_garment->rest().faces.data();
-    const int count = static_cast<int>(m_area.size());
     double energy = 0.0;
-    for (int first = 0; first < count; first += FaceBlock::size) {
-        const int run = std::min(FaceBlock::size, count - first);
+    for (int first = begin; first < end; first += FaceBlock::size) {
+        const int run = std::min(FaceBlock::size, end - first);
         const FaceConstants constants = {&m_inverse00[first],    &m_inverse01[first],
                                          &m_inverse11[first],    &m_area[first],
                                          m_garment->fabric().mu, m_garment->fabric().lambda};
@@ -94,11 +93,16 @@ double StrainEnergy::accumulate(const double* x, double* gradient) const {
 }
 
 double StrainEnergy::value(const Points& x) const {
-    return accumulate<false>(x.data(), nullptr);
+    return accumulate<false>(x.data(), 0, count(), nullptr);
 }
 
 double StrainEnergy::add_gradient(const Points& x, Points& gradient) const {
-    return accumulate<true>(x.data(), gradient.data());
+    return accumulate<true>(x.data(), 0, count(), gradient.data());
+}
+
+double StrainEnergy::add_gradient(const Points& x, int part, int parts, Points& gradient) const {
+    return accumulate<true>(x.data(), FaceBlock::begin_of(part, parts, count()),
+                            FaceBlock::begin_of(part + 1, parts, count()), gradient.data());
 }
 
 namespace {

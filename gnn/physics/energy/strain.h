@@ -23,13 +23,16 @@ class StrainEnergy {
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
     double add_gradient(const Points& x, Points& gradient) const;
+    /// The same for the faces of one part of several, of equal size.
+    double add_gradient(const Points& x, int part, int parts, Points& gradient) const;
     /// Adds the Hessian (N/m) to the values of a matrix of `pattern`. The projection is analytic.
     void add_hessian(const Points& x, const BlockPattern& pattern, HessianKind kind,
                      double* values) const;
 
  private:
     template <bool with_gradient>
-    double accumulate(const double* x, double* gradient) const;
+    double accumulate(const double* x, int begin, int end, double* gradient) const;
+    int count() const { return static_cast<int>(m_area.size()); }
 
     const Garment* m_garment;
     // Dm is upper triangular in a frame along the first edge, and so is its inverse (1/m).
