@@ -21,12 +21,34 @@ bool in_reach(const SurfaceContacts& contacts, int vertex) {
 
 }  // namespace
 
-RidgeFinder::RidgeFinder(const Garment& garment) : m_faces(garment.rest().faces) {
+RidgeFinder::RidgeFinder(const Garment& garment)
+    : m_faces(garment.rest().faces), m_in_reach(static_cast<size_t>(garment.vertex_count())) {
+    find_edges();
+    m_bent.resize(m_edges.size());
     add_faces(garment.is_pinned());
     add_edges(garment.is_pinned());
     m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
     m_rows.reserve(m_samples.size());
     Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
+}
+
+void RidgeFinder::find_edges() {
+    const auto edge = [&](Eigen::Index face, int corner) -> std::array<int, 2> {
+        const auto [low, high] =
+            std::minmax(m_faces(face, corner), m_faces(face, (corner + 1) % 3));
+        return {low, high};
+    };
+    for (Eigen::Index face = 0; face < m_faces.rows(); ++face)
+        for (int corner = 0; corner < 3; ++corner) m_edges.push_back(edge(face, corner));
+    std::sort(m_edges.begin(), m_edges.end());
+    m_edges.erase(std::unique(m_edges.begin(), m_edges.end()), m_edges.end());
+    for (Eigen::Index face = 0; face < m_faces.rows(); ++face) {
+        std::array<int, 3>& of = m_face_edges.emplace_back();
+        for (int corner = 0; corner < 3; ++corner)
+            of[static_cast<size_t>(corner)] = static_cast<int>(
+                std::lower_bound(m_edges.begin(), m_edges.end(), edge(face, corner)) -
+                m_edges.begin());
+    }
 }
 
 void RidgeFinder::add_faces(const std::vector<char>& pinned) {
@@ -35,34 +57,36 @@ void RidgeFinder::add_faces(const std::vector<char>& pinned) {
     };
     for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
         if (is_free(face, 0) || is_free(face, 1) || is_free(face, 2))
-            m_samples.push_back({face, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}});
+            m_samples.push_back(
+                {face, {1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0}, m_face_edges[static_cast<size_t>(face)]});
 }
 
 /// Each edge once, as part of the first of its faces.
 void RidgeFinder::add_edges(const std::vector<char>& pinned) {
-    std::vector<std::pair<std::array<int, 2>, Sample>> edges;
+    std::vector<Sample> midpoints(m_edges.size(), {-1, {0.0, 0.0, 0.0}, {}});
     for (int face = 0; face < static_cast<int>(m_faces.rows()); ++face)
-        for (int corner = 0; corner < 3; ++corner) {
-            const int next = (corner + 1) % 3;
-            const auto [low, high] = std::minmax(m_faces(face, corner), m_faces(face, next));
-            if (pinned[static_cast<size_t>(low)] && pinned[static_cast<size_t>(high)]) continue;
-            Sample sample{face, {0.0, 0.0, 0.0}};
-            sample.weight[static_cast<size_t>(corner)] = 0.5;
-            sample.weight[static_cast<size_t>(next)] = 0.5;
-            edges.push_back({{low, high}, sample});
+        for (size_t corner = 0; corner < 3; ++corner) {
+            const int edge = m_face_edges[static_cast<size_t>(face)][corner];
+            Sample& midpoint = midpoints[static_cast<size_t>(edge)];
+            if (midpoint.face >= 0) continue;
+            midpoint.face = face;
+            midpoint.weight[corner] = midpoint.weight[(corner + 1) % 3] = 0.5;
+            midpoint.edge.fill(edge);
         }
-    const auto by_edge = [](const auto& a, const auto& b) { return a.first < b.first; };
-    std::stable_sort(edges.begin(), edges.end(), by_edge);
-    for (size_t k = 0; k < edges.size(); ++k)
-        if (k == 0 || edges[k].first != edges[k - 1].first) m_samples.push_back(edges[k].second);
+    for (size_t edge = 0; edge < m_edges.size(); ++edge) {
+        const auto& [a, b] = m_edges[edge];
+        if (!pinned[static_cast<size_t>(a)] || !pinned[static_cast<size_t>(b)])
+            m_samples.push_back(midpoints[edge]);
+    }
 }
 
 void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Points& x,
                        SurfaceContacts& contacts, StepEnd chosen_at) {
     contacts.ridges.clear();
     m_rows.clear();
+    find_bent_edges(contacts, chosen_at);
     for (size_t k = 0; k < m_samples.size(); ++k) {
-        if (!bends(m_samples[k], contacts, chosen_at)) continue;
+        if (!bends(m_samples[k])) continue;
         const int row = static_cast<int>(k);
         m_rows.push_back(row);
         m_x.row(row).setZero();
@@ -86,22 +110,26 @@ void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Poi
 }
 
 /// Whether two corners of a face, or both ends of an edge, stand on skins that part.
-bool RidgeFinder::bends(const Sample& sample, const SurfaceContacts& contacts,
-                        StepEnd chosen_at) const {
+bool RidgeFinder::bends(const Sample& sample) const {
+    const auto bent = [&](size_t k) { return m_bent[static_cast<size_t>(sample.edge[k])] != 0; };
+    return bent(0) || bent(1) || bent(2);
+}
+
+void RidgeFinder::find_bent_edges(const SurfaceContacts& contacts, StepEnd chosen_at) {
     const bool start = chosen_at == StepEnd::start;
     const Points& normals = start ? contacts.normal0 : contacts.normal1;
     const Points& points = start ? contacts.point0 : contacts.point1;
-    for (size_t c = 0; c < 3; ++c) {
-        const size_t next = (c + 1) % 3;
-        const int a = vertex(sample, c), b = vertex(sample, next);
-        if (sample.weight[c] == 0.0 || sample.weight[next] == 0.0) continue;
-        if (!in_reach(contacts, a) || !in_reach(contacts, b)) continue;
+    for (size_t i = 0; i < m_in_reach.size(); ++i)
+        m_in_reach[i] = in_reach(contacts, static_cast<int>(i));
+    for (size_t edge = 0; edge < m_edges.size(); ++edge) {
+        const auto& [a, b] = m_edges[edge];
+        m_bent[edge] = 0;
+        if (!m_in_reach[static_cast<size_t>(a)] || !m_in_reach[static_cast<size_t>(b)]) continue;
         const double cosine = normals.row(a).dot(normals.row(b));
         if (!(cosine < smooth && cosine > opposite)) continue;
         // in a valley the normals lean towards each other
-        if ((normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0) return true;
+        m_bent[edge] = (normals.row(b) - normals.row(a)).dot(points.row(b) - points.row(a)) > 0.0;
     }
-    return false;
 }
 
 /// Whether a ridge faces the way that the skins under the face's vertices do; where it does not,

@@ -16,7 +16,7 @@ namespace cloth {
 ///     ridges.find(proximity, boundary, state.x, contacts);  // fills contacts.ridges
 ///
 /// Of the faces and edges that bend so, centres and midpoints near an obstacle get a contact of
-/// their own. Cloth on smooth surfaces costs one comparison of normals per edge of a face.
+/// their own. Cloth on smooth surfaces costs one comparison of normals per edge.
 class RidgeFinder {
  public:
     explicit RidgeFinder(const Garment& garment);
@@ -30,19 +30,26 @@ class RidgeFinder {
     struct Sample {
         int face;
         std::array<double, 3> weight;  ///< of the face's corners
+        std::array<int, 3> edge;       ///< that it lies on or between; an edge's midpoint: its own
     };
     int vertex(const Sample& sample, size_t corner) const {
         return m_faces(sample.face, static_cast<int>(corner));
     }
+    void find_edges();
     void add_faces(const std::vector<char>& pinned);
     void add_edges(const std::vector<char>& pinned);
-    bool bends(const Sample& sample, const SurfaceContacts& contacts, StepEnd chosen_at) const;
+    void find_bent_edges(const SurfaceContacts& contacts, StepEnd chosen_at);
+    bool bends(const Sample& sample) const;
     bool agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const;
     RidgeContact ridge(int row, StepEnd chosen_at) const;
 
     Faces m_faces;
-    std::vector<Sample> m_samples;  ///< centres of faces, then midpoints of edges
-    Points m_x;                     ///< |samples| x 3 (m)
+    std::vector<std::array<int, 2>> m_edges;       ///< ascending
+    std::vector<std::array<int, 3>> m_face_edges;  ///< |F|: from each corner to the next
+    std::vector<char> m_in_reach;                  ///< |V|
+    std::vector<char> m_bent;                      ///< |edges|: its ends stand on skins that part
+    std::vector<Sample> m_samples;                 ///< centres of faces, then midpoints of edges
+    Points m_x;                                    ///< |samples| x 3 (m)
     std::vector<int> m_rows;
     SurfaceContacts m_near;          ///< |samples|
     std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its corners

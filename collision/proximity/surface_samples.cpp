@@ -9,6 +9,7 @@
 namespace cloth {
 
 constexpr double near_enough = 2e-2;  // m: skins further away do not matter
+constexpr int enough_samples = 4000;  // to be worth waking threads for
 
 static std::vector<std::array<int, 2>> faces_at_edges(const Garment& garment) {
     std::map<std::pair<int, int>, int> index;
@@ -34,6 +35,7 @@ SurfaceSamples::SurfaceSamples(const Garment& garment)
     m_x.setZero(count, 3);
     m_distance.setZero(count);  // what is not movable is never deep
     m_parted.resize(static_cast<size_t>(count));
+    m_unsure.resize(static_cast<size_t>(count));
     m_movable.resize(static_cast<size_t>(count));
     for (int sample = 0; sample < count; ++sample)
         for (const int vertex : corners(sample).vertex)
@@ -103,8 +105,18 @@ double SurfaceSamples::vouched_by_faces(int edge) const {
     return bound;
 }
 
-/// Searches for the nearest points of the samples in m_rows.
-void SurfaceSamples::search(Proximity& proximity, const Boundary& boundary) {
+template <class Update>
+void SurfaceSamples::update_all(int first, int last, const Update& update) {
+#pragma omp parallel for if (last - first >= enough_samples)
+    for (int sample = first; sample < last; ++sample) update(sample);
+}
+
+/// Searches for the nearest points of samples that may be deep.
+void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundary, int first,
+                                   int last) {
+    m_rows.clear();
+    for (int sample = first; sample < last; ++sample)
+        if (m_unsure[static_cast<size_t>(sample)]) m_rows.push_back(sample);
     m_ignored.resize(static_cast<size_t>(m_x.rows()));
     for (const int sample : m_rows) {
         LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
@@ -120,26 +132,24 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
                                const std::vector<char>* changed) {
     m_radius = proximity.settings().radius;
     const auto update = [&](int sample) {
-        if (!has_changed(sample, changed)) return false;
+        const auto k = static_cast<size_t>(sample);
+        m_unsure[k] = has_changed(sample, changed);
+        if (!m_unsure[k]) return;
         m_x.row(sample) = corners(sample).position(x);
-        char& parted = m_parted[static_cast<size_t>(sample)];
-        parted = skins_part(sample, contacts);
-        m_distance[sample] = parted ? -m_radius : vouched_by_vertices(sample, x, contacts.distance);
-        return true;
+        m_parted[k] = skins_part(sample, contacts);
+        m_distance[sample] =
+            m_parted[k] ? -m_radius : vouched_by_vertices(sample, x, contacts.distance);
+        m_unsure[k] = m_distance[sample] < -depth;
     };
-    m_rows.clear();
-    for (int face = 0; face < face_count(); ++face)
-        if (update(face) && m_distance[face] < -depth) m_rows.push_back(face);
-    search(proximity, boundary);
-    m_rows.clear();
-    for (int edge = 0; edge < static_cast<int>(m_edges.size()); ++edge) {
-        const int sample = face_count() + edge;
-        if (!update(sample) || !(m_distance[sample] < -depth)) continue;
-        if (!m_parted[static_cast<size_t>(sample)])
-            m_distance[sample] = std::max(m_distance[sample], vouched_by_faces(edge));
-        if (m_distance[sample] < -depth) m_rows.push_back(sample);
-    }
-    search(proximity, boundary);
+    update_all(0, face_count(), update);
+    search_unsure(proximity, boundary, 0, face_count());
+    update_all(face_count(), count(), [&](int sample) {
+        update(sample);
+        if (!m_unsure[static_cast<size_t>(sample)] || m_parted[static_cast<size_t>(sample)]) return;
+        m_distance[sample] = std::max(m_distance[sample], vouched_by_faces(sample - face_count()));
+        m_unsure[static_cast<size_t>(sample)] = m_distance[sample] < -depth;
+    });
+    search_unsure(proximity, boundary, face_count(), count());
     m_deep.clear();
     for (int sample = 0; sample < m_x.rows(); ++sample)
         if (m_distance[sample] < -depth) m_deep.push_back(sample);
