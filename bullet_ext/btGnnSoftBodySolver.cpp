@@ -336,7 +336,8 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             entry.handover.afterStep(body, static_cast<double>(solverdt));
         }
         if (entry.stepping != Stepping::cloth) continue;
-        if (limited) entry.step->setMaxMs(deadline.left() / std::max(1, waiting--));
+        if (limited)
+            entry.step->setDeadline(cloth::Deadline::in(deadline.left() / std::max(1, waiting--)));
         stepCloth(body, entry, static_cast<double>(solverdt));
     }
     for (const std::string& message : m_obstacles.takeMessages()) say(message);

@@ -281,6 +281,7 @@ bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
     StageTimes times;
     do {
         to = from;
+        if (m_deadline.is_set()) m_stepper->set_max_ms(std::max(1e-3, m_deadline.left()));
         m_report = m_stepper->step(boundary, m_cloth_step.length, to);
         m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
         add(m_report.times, times);

@@ -9,6 +9,7 @@
 #include "bullet_ext/clothSleep.h"
 #include "bullet_ext/pinchedCloth.h"
 #include "bullet_ext/twoWayCoupling.h"
+#include "gnn/deadline.h"
 #include "gnn/stepper.h"
 
 class btSoftBody;
@@ -38,8 +39,8 @@ class SoftBodyStep {
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
-    /// Limits the time of the next cloth steps, see Stepper::set_max_ms().
-    void setMaxMs(double ms) { m_stepper->set_max_ms(ms); }
+    /// Limits the time of the cloth steps of the next step(), see Stepper::set_max_ms().
+    void setDeadline(const Deadline& deadline) { m_deadline = deadline; }
     const StepReport& lastReport() const { return m_report; }
     /// Impulse that dynamic rigid bodies got from the cloth in the last world step (N s).
     const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }
@@ -90,6 +91,7 @@ class SoftBodyStep {
     btSoftBody& m_body;
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
+    Deadline m_deadline;
     StepReport m_report;
     TwoWayCoupling m_reactions;
     PinchedCloth m_pinched;

@@ -92,7 +92,7 @@ endforeach()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/fastcloth.pc.in ${PROJECT_BINARY_DIR}/fastcloth.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/fastcloth.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-install(FILES ${PROJECT_SOURCE_DIR}/gnn/stepper.h DESTINATION ${FASTCLOTH_INCLUDE_DIR}/gnn)
+install(FILES ${PROJECT_SOURCE_DIR}/gnn/deadline.h ${PROJECT_SOURCE_DIR}/gnn/stepper.h DESTINATION ${FASTCLOTH_INCLUDE_DIR}/gnn)
 foreach(folder ${FASTCLOTH_HEADERS})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${FASTCLOTH_INCLUDE_DIR}/${folder}
           FILES_MATCHING PATTERN "*.h" PATTERN cmake EXCLUDE)

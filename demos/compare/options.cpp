@@ -44,7 +44,8 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
              "fast motion in sub-steps), or each with +K for exactly K\n"
              "refinement iterations (+0: the network alone); -bdf2 at\n"
              "the end: by BDF2 instead of backward Euler;\n"
-             "bf16-NAME: its products in bfloat16");
+             "bf16-NAME: its products in bfloat16; @M at the end: in M ms\n"
+             "a step, see Stepper::set_max_ms()");
     add_whole_number(app, "--frames", options.frames, 0, 100000,
                      "frames of 1/30 s of the motion (default 90; 0: all)");
     add_whole_number(app, "--reference-frames", options.reference_frames, 0, 100000,

@@ -97,7 +97,7 @@ void ClothStepper::prepare(double dt) {
 
 bool ClothStepper::set_max_ms(double ms) {
     m_max_ms = ms;
-    return true;
+    return m_solver->settings().minimiser != MinimiserKind::newton;
 }
 
 bool ClothStepper::internal_forces(const Points& x, Points& forces) const {

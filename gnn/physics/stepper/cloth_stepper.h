@@ -109,7 +109,7 @@ class ClothStepper : public Stepper {
     /// Before the limit iterations end, parts are taken with fewer of them, then steps are cut into
     /// fewer parts, and what may have been passed through is not searched for. The start, one
     /// iteration for each part and contact projection take the time that they take. Of steps of
-    /// much motion half is kept for taking them again. Newton's method takes no notice.
+    /// much motion half is kept for taking them again. Newton's method takes no notice (false).
     bool set_max_ms(double ms) override;
     bool internal_forces(const Points& x, Points& forces) const override;
     std::optional<double> internal_energy(const Points& x) const override {

@@ -109,6 +109,11 @@ TEST_F(MaxMs, AStepThatFailsIsTakenAgainWhateverTheTime) {
     }
 }
 
+TEST_F(MaxMs, NewtonsMethodKnowsNoLimit) {
+    ClothStepper stepper(m_garment, ClothStepperSettings::reference());
+    EXPECT_FALSE(stepper.set_max_ms(5.0));
+}
+
 TEST_F(MaxMs, LimitsOutOfRangeAreRefused) {
     ClothStepperSettings settings;
     for (const double bad : {0.05, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
