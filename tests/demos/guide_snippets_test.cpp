@@ -124,11 +124,28 @@ TEST_F(GuideSnippets, Solvers) {
         settings.substeps = 40;
         return std::make_unique<cloth::XpbdStepper>(garment, settings);
     };
+    const auto xpbd_layers = [](const cloth::Garment& garment) {  // xpbd-40 that feels itself
+        cloth::XpbdSettings settings;
+        settings.substeps = 40;
+        settings.self_contact.thickness = 4e-3;  // m
+        return std::make_unique<cloth::XpbdStepper>(garment, settings);
+    };
+    const auto small_3 = [&](const cloth::Garment& garment) {  // small+3
+        cloth::ClothSettings settings;
+        settings.weights = weights;
+        settings.step.quasi_newton = cloth::IterationLimits::exactly(3);
+        settings.guard.max_substeps = 1;  // no step is cut or searched
+        return cloth::make_cloth(garment, settings);
+    };
+    const auto reference = [](const cloth::Garment& garment) {
+        return std::make_unique<cloth::ClothStepper>(garment,
+                                                     cloth::ClothStepperSettings::reference());
+    };
     // Learned steppers are named after the file of their network.
-    const std::pair<cloth::StepperFactory, const char*> solvers[] = {{small, "small"},
-                                                                     {physics, "quasi-newton"},
-                                                                     {bdf2, "quasi-newton-bdf2"},
-                                                                     {xpbd, "xpbd-40"}};
+    const std::pair<cloth::StepperFactory, const char*> solvers[] = {
+        {small, "small"},        {physics, "quasi-newton"}, {bdf2, "quasi-newton-bdf2"},
+        {xpbd, "xpbd-40"},       {xpbd_layers, "xpbd-40"},  {small_3, "small+3"},
+        {reference, "reference"}};
     for (const auto& [factory, name] : solvers) {
         solver.attach(body, cloth::Fabric::soft_cotton(), factory);
         EXPECT_EQ(solver.stepperOf(body)->name(), name);
