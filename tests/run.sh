@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds, runs every test. Quick the second time.
-#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch;
-#                           tsan: the tests with several threads; coverage: prints the share of lines
+#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, notorch;
+#                           asan: the unit tests, and the share of lines that they run;
+#                           tsan: the tests with several threads
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # compiled objects are found again in another checkout
@@ -10,7 +11,7 @@ preset="${1:-release}"
 
 case "$preset" in
   asan | notorch) demos/install_packages.sh notorch ;;
-  tsan | coverage) demos/install_packages.sh checks ;;
+  tsan) demos/install_packages.sh checks ;;
   *) demos/install_packages.sh ;;
 esac
 
@@ -26,10 +27,7 @@ case "$preset" in
     selection=(-L unit)
     # LibTorch-free, but third-party libraries keep caches for life
     export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
-    ;;
-  coverage)
-    selection=(-L unit -LE slow)
-    find build/coverage -name '*.gcda' -delete
+    find build/asan -name '*.gcda' -delete
     ;;
   tsan)
     selection=(-R Thread)
@@ -44,8 +42,8 @@ esac
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$jobs" \
   "${selection[@]}"
 
-if [ "$preset" = coverage ]; then
+if [ "$preset" = asan ]; then
   echo "== lines that the tests ran"
-  gcovr --root . --filter '(bullet_ext|collision|data|gnn|render)/' --print-summary build/coverage |
-    tail -n 6
+  gcovr --root . --filter '(bullet_ext|collision|data|gnn|render)/' -j "$(nproc)" --print-summary \
+    build/asan | tail -n 2
 fi

@@ -14,8 +14,9 @@ LimbSet only(size_t limb) {
 
 }  // namespace
 
-LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings, std::shared_ptr<ObstacleTrees> trees)
-    : m_settings(settings), m_proximity({}, std::move(trees)) {
+LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings,
+                         const std::shared_ptr<ObstacleTrees>& trees)
+    : m_settings(settings), m_proximity({}, trees), m_own_proximity({}, trees) {
     check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
     check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
     check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);
@@ -181,12 +182,13 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
         m_without[i] = ~m_own[i];
         if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
     }
-    m_proximity.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
+    m_own_proximity.query_rows(x, m_rows, boundary, m_near_own, end,
+                               {&m_without, m_settings.reach});
     m_next.clear();
     for (const int i : m_rows) {
         const auto vertex = static_cast<size_t>(i);
         const LimbSet not_joined = m_own[vertex] | m_unjoined[vertex];
-        const auto cover = m_proximity.cover(m_near_own, i, end, not_joined);
+        const auto cover = m_own_proximity.cover(m_near_own, i, end, not_joined);
         if (!cover || !(cover->depth > m_settings.least_cover)) continue;
         m_without[vertex] = ~limb_at(boundary, m_near_own.obstacle[vertex], cover->face);
         m_next.push_back(i);

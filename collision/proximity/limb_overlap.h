@@ -45,7 +45,7 @@ class LimbOverlap {
     /// @param trees  see Proximity
     /// @throws ArgumentError if a setting is out of range
     explicit LimbOverlap(const LimbOverlapSettings& settings = {},
-                         std::shared_ptr<ObstacleTrees> trees = nullptr);
+                         const std::shared_ptr<ObstacleTrees>& trees = nullptr);
 
     /// The boundary with the limbs that are ignored in the step that begins added to
     /// Boundary::ignored_limbs; itself, if no vertex ignores any. It is valid until the next call.
@@ -80,8 +80,9 @@ class LimbOverlap {
 
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
-    std::vector<char> m_has_limbs;                 ///< each obstacle of the last step
-    std::vector<Limbs> m_known, m_found;           ///< of the obstacles in the last step
+    Proximity m_own_proximity;            ///< of own limbs: searches begin at the faces found last
+    std::vector<char> m_has_limbs;        ///< each obstacle of the last step
+    std::vector<Limbs> m_known, m_found;  ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
     LimbSet m_covered = 0;
     std::vector<LimbSet> m_own;       ///< |V|: 0: has not come near any limb yet

@@ -47,6 +47,10 @@ bool DataRow::is_null(const std::string& pointer) const {
     return at(pointer).is_null();
 }
 
+bool DataRow::has(const std::string& pointer) const {
+    return m_values->contains(nlohmann::ordered_json::json_pointer(pointer));
+}
+
 DataFile DataFile::load(const std::string& path) {
     Json content = Json::parse(read_file(path), nullptr, /*allow_exceptions=*/false);
     if (!content.is_object()) throw LoadError(path, "", "is not a JSON object", measure_again);

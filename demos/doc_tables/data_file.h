@@ -22,6 +22,7 @@ class DataRow {
     /// True or false; false for null.
     bool truth(const std::string& pointer) const;
     bool is_null(const std::string& pointer) const;
+    bool has(const std::string& pointer) const;
 
  private:
     const nlohmann::ordered_json& at(const std::string& pointer) const;

@@ -92,6 +92,12 @@ std::vector<DataSet> data_sets() {
          "report.json",
          tidy_benchmark,
          {}},
+        {"step",
+         figures + "step.json",
+         benchmark_command("step_bench"),
+         "report.json",
+         tidy_benchmark,
+         {}},
         {"bfloat16_rollout",
          figures + "bfloat16_rollout.json",
          "build/release/demos/compare --garment tshirt --motion 01_01 --frames 15"

@@ -31,6 +31,7 @@ const Registry& doc_registry() {
          {"bfloat16", {"engine"}, bfloat16_table},
          {"edge_block", {"engine"}, edge_block_table},
          {"bfloat16_rollout", {"bfloat16_rollout"}, bfloat16_rollout_table},
+         {"step", {"step"}, step_table},
          {"self_contact", {"self_contact"}, self_contact_table},
          {"commands", {}, [](const std::vector<DataFile>&) { return commands_table(); }}}};
     return registry;

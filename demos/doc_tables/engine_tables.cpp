@@ -84,6 +84,41 @@ MarkdownTable edge_block_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable step_table(const std::vector<DataFile>& files) {
+    const std::pair<const char*, const char*> stages[] = {
+        {"fit_trees", "body: hierarchy fitted to a pose"},
+        {"nearest_points", "nearest points of all vertices"},
+        {"ridges", "contacts at ridges"},
+        {"contact_projection", "contact projection, with nearest points"},
+        {"begin_potential", "potential of the step"},
+        {"strain", "strain and its gradient"},
+        {"bending", "bending and its gradient"},
+        {"energy_gradient", "energy and its gradient"},
+        {"matrix_solve", "solve with the constant matrix"},
+        {"contact_solve", "solve with contact in it"},
+        {"minimise<3>", "three iterations"},
+        {"minimise<10>", "ten iterations"},
+        {"features", "network `small`: features"},
+        {"network", "network `small`"},
+        {"whole_step<false, 3>", "whole step, `quasi-newton-3`, with limbs"},
+        {"whole_step<false, 10>", "whole step, `quasi-newton-10`, with limbs"},
+        {"whole_step<true, 3>", "whole step, `small+3`, with limbs"}};
+    MarkdownTable table;
+    table.heading = {"stage", "one thread (us)", "two threads (us)", "ns per vertex",
+                     "floor of its arithmetic (us)"};
+    for (const auto& [name, what] : stages) {
+        const auto with = [&, name = name](const char* threads) {
+            return benchmark(files.at(0), std::string(name) + "/" + threads + "/real_time");
+        };
+        const DataRow one = with("1");
+        table.rows.push_back({what, significant(one.number("/real_time"), 2),
+                              significant(with("2").number("/real_time"), 2),
+                              significant(one.number("/per_vertex"), 2),
+                              one.has("/floor_us") ? significant(one.number("/floor_us"), 2) : ""});
+    }
+    return table;
+}
+
 MarkdownTable self_contact_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"sheet", "vertices", "without (ms)", "with self-contact (ms)"};

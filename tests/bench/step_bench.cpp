@@ -6,6 +6,10 @@
 // The garment has 3,991 vertices and moves with the default body (26,756 faces) through 60 frames
 // of motion 01_01; without assimp-testmodels it lies on a sphere. Each benchmark goes from frame to
 // frame, as a stepper does. `per_vertex` is in nanoseconds. The argument is the number of threads.
+//
+// `floor_us` is what the stage's arithmetic takes at the peak of one core's multiply-adds, as
+// measured at the start of this run (float32; half of it in double precision). `bytes` is what the
+// stage reads and writes at least, each array once.
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
@@ -20,6 +24,7 @@
 #include "gnn/physics/solver/quasi_newton.h"
 #include "gnn/physics/stepper/guess.h"
 #include "tests/bench/network_scene.h"
+#include "tests/bench/peak.h"
 
 namespace cloth::test {
 namespace {
@@ -63,6 +68,19 @@ struct Recording {
 const Recording& recording() {
     static const Recording instance;
     return instance;
+}
+
+/// Arithmetic and memory of a stage.
+struct Work {
+    double flops = 0.0;  ///< additions and multiplications
+    double bytes = 0.0;
+    bool doubles = true;
+};
+
+void report(benchmark::State& state, const Work& work) {
+    static const double peak = measured_peak(1);  // float32
+    state.counters["floor_us"] = 1e6 * work.flops / (work.doubles ? 0.5 * peak : peak);
+    state.counters["bytes"] = work.bytes;
 }
 
 /// Runs `work` on one moment after the other.
@@ -161,22 +179,41 @@ void elastic_gradient(benchmark::State& state) {
     });
 }
 
+constexpr double point_bytes = 3 * sizeof(double);
+
 /// On one thread, whatever the argument says.
-template <class Energy>
-void elastic(benchmark::State& state) {
+/// @tparam flops, constants  of an element, as its loop has them
+template <class Energy, int corners, int flops, int constants>
+void elastic(benchmark::State& state, double elements) {
     const Energy energy(recording().garment);
+    const auto vertices = static_cast<double>(recording().garment.vertex_count());
     Points gradient = Points::Zero(recording().garment.vertex_count(), 3);
     for_moments(state, [&](const Moment& moment) {
         benchmark::DoNotOptimize(energy.add_gradient(moment.guess, gradient));
     });
+    const double element_bytes = corners * sizeof(int) + constants * sizeof(double);
+    report(state, {flops * elements, 3 * point_bytes * vertices + element_bytes * elements});
+}
+
+void strain(benchmark::State& state) {
+    elastic<StrainEnergy, 3, 92, 4>(state, recording().garment.face_count());
+}
+
+void bending(benchmark::State& state) {
+    elastic<BendingEnergy, 4, 132, 2>(state,
+                                      static_cast<double>(recording().garment.hinges().size()));
 }
 
 /// One solve of three right-hand sides with the constant matrix.
 void matrix_solve(benchmark::State& state) {
     QuasiNewtonMatrix matrix(recording().garment);
     matrix.prepare(recording().garment, dt);
+    SupernodalCholesky<double> factor;
+    factor.factorise(matrix.matrix());
     Points out;
     for_moments(state, [&](const Moment& moment) { matrix.solve(moment.guess, out); });
+    const auto numbers = static_cast<double>(factor.nonzeros());
+    report(state, {2 * 2 * 3 * numbers, 2 * sizeof(double) * numbers});
 }
 
 /// One with contact in the matrix.
@@ -225,6 +262,11 @@ struct SmallNetwork {
           builder(recording().garment, graph, engine.config().features) {}
 };
 
+const TshirtMoment& any_moment() {
+    static const TshirtMoment instance;
+    return instance;
+}
+
 void features(benchmark::State& state) {
     SmallNetwork small;
     IncrementalPotential potential(recording().garment);
@@ -251,6 +293,9 @@ void network(benchmark::State& state) {
         state.ResumeTiming();
         small.engine.predict(small.graph, features, out);
     });
+    const TshirtMoment& moment = any_moment();
+    const NetworkInput input(moment, small.engine.config());
+    report(state, {network_flops(small.engine.config(), input).total(), 0.0, false});
 }
 
 /// Whole steps, one after the other: the cloth goes its own way through the recorded frames.
@@ -280,8 +325,8 @@ STAGE(ridges);
 STAGE(begin_potential);
 STAGE(energy_gradient);
 STAGE(elastic_gradient);
-STAGE(elastic<StrainEnergy>);
-STAGE(elastic<BendingEnergy>);
+STAGE(strain);
+STAGE(bending);
 STAGE(matrix_solve);
 STAGE(contact_solve);
 STAGE(minimise<3>);

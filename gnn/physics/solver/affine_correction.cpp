@@ -3,21 +3,21 @@
 namespace cloth {
 namespace {
 
-using Lanes = double __attribute__((vector_size(32)));  // x, y, z and a spare lane
+using RowLanes = double __attribute__((vector_size(32)));  // x, y, z and a spare lane
 
-Lanes load(const double* p) {
-    return Lanes{p[0], p[1], p[2], 0.0};
+RowLanes load_row(const double* p) {
+    return RowLanes{p[0], p[1], p[2], 0.0};
 }
 
 /// out = a + scale out - fields c, row by row.
 void add_rows(const Points& a, double scale, const AffineFields::Columns& fields,
               const AffineFields::Coefficients& c, Points& out) {
-    Lanes rows[AffineFields::count];
-    for (int k = 0; k < AffineFields::count; ++k) rows[k] = load(c.row(k).data());
+    RowLanes rows[AffineFields::count];
+    for (int k = 0; k < AffineFields::count; ++k) rows[k] = load_row(c.row(k).data());
     for (Eigen::Index i = 0; i < a.rows(); ++i) {
         double* const to = out.data() + 3 * i;
         const double* const f = fields.data() + AffineFields::count * i;
-        Lanes sum = load(a.data() + 3 * i) + scale * load(to);
+        RowLanes sum = load_row(a.data() + 3 * i) + scale * load_row(to);
         for (int k = 0; k < AffineFields::count; ++k) sum -= f[k] * rows[k];
         for (int k = 0; k < 3; ++k) to[k] = sum[k];
     }

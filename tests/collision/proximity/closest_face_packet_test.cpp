@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 using Query = ClosestFaceTree::Query;
 
-constexpr double inf = std::numeric_limits<double>::infinity();
+constexpr double not_finite = std::numeric_limits<double>::infinity();
 
 /// Asks for the points together and one by one.
 void expect_same_as_single(const ClosestFaceTree& tree, const std::vector<Query>& queries,
@@ -90,7 +90,7 @@ TEST(ClosestFacePacket, FacesThatAreNotFiniteAndEmptyMeshesAreNoCandidates) {
     std::mt19937 random(13);
     TriMesh mesh = icosphere(2);
     for (int k = 0; k < 20; ++k)
-        mesh.vertices(Eigen::Index(random() % 100), k % 3) = k % 2 ? inf : std::nan("");
+        mesh.vertices(Eigen::Index(random() % 100), k % 3) = k % 2 ? not_finite : std::nan("");
     const ClosestFaceTree tree(mesh.vertices, mesh.faces, 3.0);
     const Faces none(0, 3);
     const ClosestFaceTree empty(mesh.vertices, none, 3.0);
@@ -107,7 +107,7 @@ TEST(SpatialOrder, RunsAreGroupsOfNeighbours) {
     constexpr int run = 8;
     for (const Eigen::Index count : {0, 1, 7, 8, 9, 100, 4001}) {
         Points x = random_points(random, count, 1.0);
-        if (count == 100) x(3, 1) = std::nan(""), x(50, 0) = inf;
+        if (count == 100) x(3, 1) = std::nan(""), x(50, 0) = not_finite;
         const std::vector<int> order = spatial_order(x, run);
         std::vector<char> seen(size_t(count), 0);
         for (const int i : order) ++seen.at(size_t(i));
