@@ -80,7 +80,7 @@ struct Work {
 void report(benchmark::State& state, const Work& work) {
     static const double peak = measured_peak(1);  // float32
     state.counters["floor_us"] = 1e6 * work.flops / (work.doubles ? 0.5 * peak : peak);
-    state.counters["bytes"] = work.bytes;
+    if (work.bytes > 0.0) state.counters["bytes"] = work.bytes;
 }
 
 /// Runs `work` on one moment after the other.
