@@ -13,9 +13,9 @@ packages=(
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
 )
-tests=(libcgal-dev libgtest-dev libbenchmark-dev gcovr)
+tests=(libcgal-dev libgtest-dev libbenchmark-dev)
 # clang only recommends the sanitizers' runtime
-checks=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libomp-14-dev)
+checks=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libomp-14-dev gcovr)
 # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
 training=(libtorch-dev libopenblas0)
 case "${1:-all}" in

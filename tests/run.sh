@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds, runs every test. Quick the second time.
-#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, notorch;
-#                           asan: the unit tests, and the share of lines that they run;
-#                           tsan: the tests with several threads
+#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch;
+#                           tsan: the tests with several threads; coverage: prints the share of lines
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # compiled objects are found again in another checkout
@@ -11,7 +10,7 @@ preset="${1:-release}"
 
 case "$preset" in
   asan | notorch) demos/install_packages.sh notorch ;;
-  tsan) demos/install_packages.sh checks ;;
+  tsan | coverage) demos/install_packages.sh checks ;;
   *) demos/install_packages.sh ;;
 esac
 
@@ -27,7 +26,10 @@ case "$preset" in
     selection=(-L unit)
     # LibTorch-free, but third-party libraries keep caches for life
     export ASAN_OPTIONS="${ASAN_OPTIONS:-detect_leaks=0}"
-    find build/asan -name '*.gcda' -delete
+    ;;
+  coverage)
+    selection=(-L unit -LE slow)
+    find build/coverage -name '*.gcda' -delete
     ;;
   tsan)
     selection=(-R Thread)
@@ -42,8 +44,8 @@ esac
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$jobs" \
   "${selection[@]}"
 
-if [ "$preset" = asan ]; then
+if [ "$preset" = coverage ]; then
   echo "== lines that the tests ran"
-  gcovr --root . --filter '(bullet_ext|collision|data|gnn|render)/' -j "$(nproc)" --print-summary \
-    build/asan | tail -n 2
+  gcovr --root . --filter '(bullet_ext|collision|data|gnn|render)/' --print-summary build/coverage |
+    tail -n 6
 fi

@@ -34,7 +34,8 @@ std::vector<Query> random_queries(std::mt19937& random, const TriMesh& mesh) {
     std::vector<Query> queries(1 + random() % ClosestFaceTree::packet);
     for (Query& query : queries) {
         query.x = middle + random_point(random, spread);
-        if (random() % 8 == 0) query.x = mesh.vertices.row(Eigen::Index(random() % 12));
+        if (random() % 8 == 0)
+            query.x = mesh.vertices.row(Eigen::Index(random() % size_t(mesh.vertices.rows())));
         if (random() % 2 == 0) query.hint = int(random() % size_t(mesh.faces.rows()));
         if (random() % 4 == 0) query.ignored = random() % 8;
     }

@@ -9,7 +9,7 @@
 namespace cloth {
 namespace {
 
-constexpr double dt = 1.0 / 30.0;
+constexpr double frame_time = 1.0 / 30.0;
 constexpr double no_time = 1e-6;  // ms
 
 /// A level sheet above a ball.
@@ -38,8 +38,8 @@ TEST_F(MaxMs, WithTimeToSpareNothingChanges) {
     ClothStepper unlimited(m_garment), limited(m_garment);
     EXPECT_TRUE(limited.set_max_ms(1e7));
     for (int frame = 0; frame < 5; ++frame) {
-        unlimited.step(boundary, dt, free);
-        EXPECT_FALSE(limited.step(boundary, dt, m_state).out_of_time);
+        unlimited.step(boundary, frame_time, free);
+        EXPECT_FALSE(limited.step(boundary, frame_time, m_state).out_of_time);
     }
     EXPECT_EQ(m_state.x, free.x);
     EXPECT_EQ(m_state.v, free.v);
@@ -51,7 +51,7 @@ TEST_F(MaxMs, WithoutTimeAStepIsOneIterationAndNothingEndsInside) {
     stepper.set_max_ms(no_time);
     double slack = 0.0;
     for (int frame = 0; frame < 30; ++frame) {
-        const StepReport report = stepper.step(boundary, dt, m_state);
+        const StepReport report = stepper.step(boundary, frame_time, m_state);
         ASSERT_TRUE(report.finite);
         EXPECT_TRUE(report.out_of_time);
         EXPECT_EQ(report.substeps, 1);
@@ -62,7 +62,7 @@ TEST_F(MaxMs, WithoutTimeAStepIsOneIterationAndNothingEndsInside) {
     }
     EXPECT_GT(slack, 1e-3) << "what is left of the forces tells how far the iterations got";
     stepper.set_max_ms(std::numeric_limits<double>::infinity());
-    const StepReport report = stepper.step(boundary, dt, m_state);
+    const StepReport report = stepper.step(boundary, frame_time, m_state);
     EXPECT_FALSE(report.out_of_time);
     EXPECT_GT(report.iterations, 1);
 }
@@ -70,10 +70,10 @@ TEST_F(MaxMs, WithoutTimeAStepIsOneIterationAndNothingEndsInside) {
 TEST_F(MaxMs, WithoutTimeFastStepsAreCutIntoFewerParts) {
     ClothStepper unlimited(m_garment), limited(m_garment);
     ClothState free = m_state;
-    EXPECT_EQ(unlimited.step(ball(-0.9, 0.6), dt, free).substeps, 16);
+    EXPECT_EQ(unlimited.step(ball(-0.9, 0.6), frame_time, free).substeps, 16);
     limited.set_max_ms(no_time);
-    limited.step(ball(-0.9, -0.9), dt, m_state);  // shows what a part costs
-    const StepReport report = limited.step(ball(-0.9, 0.6), dt, m_state);
+    limited.step(ball(-0.9, -0.9), frame_time, m_state);  // shows what a part costs
+    const StepReport report = limited.step(ball(-0.9, 0.6), frame_time, m_state);
     EXPECT_TRUE(report.finite);
     EXPECT_TRUE(report.out_of_time);
     EXPECT_EQ(report.substeps, 1);
@@ -86,24 +86,24 @@ TEST_F(MaxMs, StepsThatAreAlwaysCutStayCut) {
     settings.max_ms = 0.1;
     ClothStepper stepper(m_garment, settings);
     for (int frame = 0; frame < 3; ++frame) {
-        const StepReport report = stepper.step(ball(-0.9, 0.6), dt, m_state);
+        const StepReport report = stepper.step(ball(-0.9, 0.6), frame_time, m_state);
         EXPECT_TRUE(report.finite);
         EXPECT_GE(report.substeps, 4);
     }
 }
 
 /// Its whole steps fail.
-class Failing : public StepSolver {
+class FailingWhole : public StepSolver {
  public:
-    explicit Failing(const Garment& garment) : StepSolver(garment, {}) {}
+    explicit FailingWhole(const Garment& garment) : StepSolver(garment, {}) {}
     StepReport whole(const Boundary&, double, ClothState&) override { return StepReport::failed(); }
 };
 
 TEST_F(MaxMs, AStepThatFailsIsTakenAgainWhateverTheTime) {
-    ClothStepper stepper(m_garment, std::make_unique<Failing>(m_garment));
+    ClothStepper stepper(m_garment, std::make_unique<FailingWhole>(m_garment));
     stepper.set_max_ms(no_time);
     for (int frame = 0; frame < 3; ++frame) {
-        const StepReport report = stepper.step(ball(-0.11, -0.11), dt, m_state);
+        const StepReport report = stepper.step(ball(-0.11, -0.11), frame_time, m_state);
         EXPECT_TRUE(report.finite);
         EXPECT_EQ(report.substeps, 2);
     }
