@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "collision/geometry/faces_in_range.h"
 #include "collision/geometry/spatial_order.h"
@@ -100,17 +101,8 @@ Answers& answers_for(SearchedMesh& mesh, size_t count) {
     return sets.front();
 }
 
-/// The nearest point of a mesh; the face that was nearest last is where the search begins.
-const SurfaceHit& nearest_on_mesh(const Target& target, const Vec3& x, size_t point, double radius,
-                                  LimbSet ignored, ClosestFaceTree::Stack& stack) {
-    Answer& answer = target.answers->of[point];
-    if (answer.is_to(x, radius, ignored)) return answer.hit;
-    const int hint = answer.hit.face;
-    answer = {target.surface->closest(x, radius, hint, stack, ignored), x, radius, ignored};
-    return answer.hit;
-}
-
-/// Answers to points that are searched for in one pass; find_nearest() then finds them answered.
+/// Searches for points in one pass, where they have not been answered yet; the faces that were
+/// nearest last are where the search begins. find_nearest() then reads the answers.
 class SearchTogether {
  public:
     SearchTogether(const Target& target, double radius, ClosestFaceTree::Stack& stack)
@@ -145,13 +137,13 @@ class SearchTogether {
 };
 
 Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
-                     LimbSet ignored, ClosestFaceTree::Stack& stack) {
+                     LimbSet ignored) {
     Nearest nearest;
     if (!x.allFinite()) return nearest;
     for (const Target& target : targets) {
         if ((target.obstacle->solid & ignored) != 0) continue;
         if (target.surface) {
-            const SurfaceHit& hit = nearest_on_mesh(target, x, point, radius, ignored, stack);
+            const SurfaceHit& hit = target.answers->of[point].hit;
             if (hit.face < 0 || hit.distance >= nearest.distance) continue;
             nearest.on_mesh = hit;
             nearest.distance = hit.distance;
@@ -318,15 +310,24 @@ struct Proximity::Impl {
             orders.emplace_back();
             order = std::prev(orders.end());
         }
-        if (order->queries++ % reorder_after == 0)
+        if (order->rows.size() != count) {
+            order->rows.resize(count);
+            std::iota(order->rows.begin(), order->rows.end(), 0);
+        }
+        if (any_mesh() && order->queries++ % reorder_after == 0)
             order->rows = spatial_order(x, ClosestFaceTree::packet);
         return order->rows;
     }
 
+    bool any_mesh() const {
+        return std::any_of(targets.begin(), targets.end(),
+                           [](const Target& target) { return target.surface != nullptr; });
+    }
+
     /// The rows of x to search for, in an order that suits; null: all of them.
     const std::vector<int>& rows_in_order(const Points& x, const std::vector<int>* rows) {
+        if (rows && (!any_mesh() || rows->size() * few_rows < size_t(x.rows()))) return *rows;
         if (!rows) return order_of(x);
-        if (rows->size() * few_rows < size_t(x.rows())) return *rows;
         is_asked.assign(size_t(x.rows()), 0);
         for (const int i : *rows) is_asked[size_t(i)] = 1;
         ordered.clear();
@@ -363,7 +364,7 @@ struct Proximity::Impl {
             }
             for (int at = first; at < last; ++at) {
                 const int i = order[size_t(at)];
-                store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over(i), stack));
+                store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over(i)));
             }
         }
     }

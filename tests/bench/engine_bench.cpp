@@ -147,7 +147,7 @@ void network(benchmark::State& state, const std::function<Weights()>& load, Prec
     });
     Engine& engine = *running;
     for (auto _ : state) engine.predict(input.graph, input.features, out);
-    report(state, network_flops(config, input).total(), peak(threads));
+    report(state, network_flops(config, input.graph, input.features).total(), peak(threads));
     state.counters["peak_MB"] = peak_mb;
     const EngineMemory memory = engine.memory();
     state.counters["weights_MB"] = 1e-6 * static_cast<double>(memory.weights);

@@ -71,20 +71,20 @@ NetworkInput::NetworkInput(const TshirtMoment& moment, const ModelConfig& config
                    PotentialSettings().contact_distance, base);
     FeatureBuilder(moment.garment, graph, config.features)
         .build(moment.state, moment.boundary, potential, base, features);
-    active = static_cast<int>(features.world_mask.sum());
 }
 
-NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input) {
-    const double d = config.width, v = input.graph.vertex_count, e = input.graph.edge_count();
-    const double active = input.active, steps = config.steps;
+NetworkFlops network_flops(const ModelConfig& config, const ClothGraph& graph,
+                           const Features& features) {
+    const double d = config.width, v = graph.vertex_count, e = graph.edge_count();
+    const double active = features.world_mask.sum(), steps = config.steps;
     const double sampled = config.sampled_edges == 0 ? e : std::min(e, v * config.sampled_edges);
     const double world_steps = config.world_every_step ? steps : 1.0;
     const auto columns = [](const auto& matrix) { return static_cast<double>(matrix.cols()); };
     NetworkFlops flops;
-    flops.encoder = perceptron(v, columns(input.features.node), d, d) +
-                    perceptron(e, columns(input.features.edge), d, d) +
-                    perceptron(active, columns(input.features.world), d, d) +
-                    perceptron(active, columns(input.features.body), d, d);
+    flops.encoder = perceptron(v, columns(features.node), d, d) +
+                    perceptron(e, columns(features.edge), d, d) +
+                    perceptron(active, columns(features.world), d, d) +
+                    perceptron(active, columns(features.body), d, d);
     flops.edges = steps * perceptron(sampled, d, d, d);
     flops.products = steps * 2.0 * v * 2.0 * d * d;
     flops.world = world_steps * perceptron(active, 3.0 * d, d, d);
@@ -92,7 +92,7 @@ NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input)
     if (config.body_updates)  // the last step's never reach the output
         flops.world += (steps - 1.0) *
                            (perceptron(active, 3.0 * d, d, d) + perceptron(active, 2.0 * d, d, d)) +
-                       perceptron(active, columns(input.features.world), d, d);
+                       perceptron(active, columns(features.world), d, d);
     flops.decoder = perceptron(v, d, d, 3.0);
     return flops;
 }

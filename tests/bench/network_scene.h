@@ -44,7 +44,6 @@ struct NetworkInput {
     NetworkInput(const TshirtMoment& moment, const ModelConfig& config);
     ClothGraph graph;
     Features features;
-    int active = 0;  ///< vertices with a world edge
 };
 
 /// Multiply-adds of the matrix products of one evaluation as the engine arranges it (split first
@@ -53,6 +52,7 @@ struct NetworkFlops {
     double encoder = 0.0, edges = 0.0, products = 0.0, world = 0.0, nodes = 0.0, decoder = 0.0;
     double total() const { return encoder + edges + products + world + nodes + decoder; }
 };
-NetworkFlops network_flops(const ModelConfig& config, const NetworkInput& input);
+NetworkFlops network_flops(const ModelConfig& config, const ClothGraph& graph,
+                           const Features& features);
 
 }  // namespace cloth::test

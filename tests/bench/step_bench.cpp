@@ -99,26 +99,51 @@ void for_moments(benchmark::State& state, const Work& work) {
                                                 benchmark::Counter::kInvert);
 }
 
+void fit_surfaces(const Moment& moment, ObstacleTrees& trees) {
+    trees.begin_step();
+    for (const Obstacle& obstacle : moment.boundary.obstacles)
+        benchmark::DoNotOptimize(trees.surface(obstacle, StepEnd::end));
+}
+
 void fit_trees(benchmark::State& state) {
     ObstacleTrees trees;
+    for_moments(state, [&](const Moment& moment) { fit_surfaces(moment, trees); });
+}
+
+/// Runs `work` with the trees fitted to the end of the step, outside of the measured time.
+/// @param prepare  more that is not measured
+template <class Prepare, class Work>
+void for_fitted(benchmark::State& state, ObstacleTrees& trees, const Prepare& prepare,
+                const Work& work) {
     for_moments(state, [&](const Moment& moment) {
-        trees.begin_step();
-        for (const Obstacle& obstacle : moment.boundary.obstacles)
-            benchmark::DoNotOptimize(trees.surface(obstacle, StepEnd::end));
+        state.PauseTiming();
+        fit_surfaces(moment, trees);
+        prepare(moment);
+        state.ResumeTiming();
+        work(moment);
     });
 }
 
-/// The trees are fitted outside of the measured time.
+/// The same with a potential that has begun the step.
+template <class Prepare, class Work>
+void for_begun(benchmark::State& state, IncrementalPotential& potential, const Prepare& prepare,
+               const Work& work) {
+    for_moments(state, [&](const Moment& moment) {
+        state.PauseTiming();
+        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+        prepare(moment);
+        state.ResumeTiming();
+        work(moment);
+    });
+}
+
+constexpr auto nothing = [](const Moment&) {};
+
 void nearest_points(benchmark::State& state) {
     auto trees = std::make_shared<ObstacleTrees>();
     Proximity proximity({}, trees);
     SurfaceContacts contacts;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        trees->begin_step();
-        for (const Obstacle& obstacle : moment.boundary.obstacles)
-            trees->surface(obstacle, StepEnd::end);
-        state.ResumeTiming();
+    for_fitted(state, *trees, nothing, [&](const Moment& moment) {
         proximity.query(moment.solved, moment.boundary, contacts, StepEnd::end);
     });
 }
@@ -130,15 +155,11 @@ void contact_projection(benchmark::State& state) {
     ContactProjection projection(recording().garment);
     SurfaceContacts contacts;
     Points x;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        trees->begin_step();
-        for (const Obstacle& obstacle : moment.boundary.obstacles)
-            trees->surface(obstacle, StepEnd::end);
-        x = moment.solved;
-        state.ResumeTiming();
-        projection.resolve(proximity, moment.boundary, 5e-4, x, contacts);
-    });
+    for_fitted(
+        state, *trees, [&](const Moment& moment) { x = moment.solved; },
+        [&](const Moment& moment) {
+            projection.resolve(proximity, moment.boundary, 5e-4, x, contacts);
+        });
 }
 
 void ridges(benchmark::State& state) {
@@ -163,10 +184,7 @@ void begin_potential(benchmark::State& state) {
 void energy_gradient(benchmark::State& state) {
     IncrementalPotential potential(recording().garment);
     Points gradient;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
-        state.ResumeTiming();
+    for_begun(state, potential, nothing, [&](const Moment& moment) {
         benchmark::DoNotOptimize(potential.value_gradient(moment.guess, gradient));
     });
 }
@@ -223,16 +241,15 @@ void contact_solve(benchmark::State& state) {
     QuasiNewtonMatrix matrix(garment);
     ContactHessian contacts;
     Points gradient, out;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
+    const auto prepare = [&](const Moment& moment) {
         potential.value_gradient(moment.guess, gradient);
         gradient = -gradient;
         matrix.prepare(garment, dt);
         contacts.begin_step(potential, matrix.row_of());
         matrix.deflate(moment.guess);
         contacts.linearise(potential, moment.guess);
-        state.ResumeTiming();
+    };
+    for_begun(state, potential, prepare, [&](const Moment&) {
         matrix.solve(gradient, contacts, QuasiNewtonSettings().contact_cg_iterations, out);
     });
 }
@@ -242,60 +259,44 @@ void minimise(benchmark::State& state) {
     IncrementalPotential potential(recording().garment);
     QuasiNewton solver(recording().garment, IterationLimits::exactly(iterations));
     Points x;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
-        x = moment.guess;
-        state.ResumeTiming();
-        solver.minimise(potential, x);
-    });
+    for_begun(
+        state, potential, [&](const Moment& moment) { x = moment.guess; },
+        [&](const Moment&) { solver.minimise(potential, x); });
 }
 
+/// The network, and what it is given in a frame.
 struct SmallNetwork {
     Engine engine;
     ClothGraph graph;
     FeatureBuilder builder;
+    IncrementalPotential potential;
+    Features features;
+    PotentialValue at_guess;
 
     SmallNetwork()
         : engine(Weights::load(asset_path("weights/small.safetensors"))),
           graph(build_cloth_graph(recording().garment, engine.config().graph_settings())),
-          builder(recording().garment, graph, engine.config().features) {}
-};
+          builder(recording().garment, graph, engine.config().features),
+          potential(recording().garment) {}
 
-const TshirtMoment& any_moment() {
-    static const TshirtMoment instance;
-    return instance;
-}
+    void build(const Moment& moment) {
+        builder.build(moment.state, moment.boundary, potential, moment.guess, features, &at_guess);
+    }
+};
 
 void features(benchmark::State& state) {
     SmallNetwork small;
-    IncrementalPotential potential(recording().garment);
-    Features features;
-    PotentialValue at_guess;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
-        state.ResumeTiming();
-        small.builder.build(moment.state, moment.boundary, potential, moment.guess, features,
-                            &at_guess);
-    });
+    for_begun(state, small.potential, nothing, [&](const Moment& moment) { small.build(moment); });
 }
 
 void network(benchmark::State& state) {
     SmallNetwork small;
-    IncrementalPotential potential(recording().garment);
-    Features features;
     Points out;
-    for_moments(state, [&](const Moment& moment) {
-        state.PauseTiming();
-        potential.begin_step(moment.state, moment.boundary, moment.contacts, dt);
-        small.builder.build(moment.state, moment.boundary, potential, moment.guess, features);
-        state.ResumeTiming();
-        small.engine.predict(small.graph, features, out);
-    });
-    const TshirtMoment& moment = any_moment();
-    const NetworkInput input(moment, small.engine.config());
-    report(state, {network_flops(small.engine.config(), input).total(), 0.0, false});
+    for_begun(
+        state, small.potential, [&](const Moment& moment) { small.build(moment); },
+        [&](const Moment&) { small.engine.predict(small.graph, small.features, out); });
+    const NetworkFlops flops = network_flops(small.engine.config(), small.graph, small.features);
+    report(state, {flops.total(), 0.0, false});
 }
 
 /// Whole steps, one after the other: the cloth goes its own way through the recorded frames.

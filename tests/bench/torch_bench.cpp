@@ -18,7 +18,7 @@ void register_torch(const std::string& name, const ModelConfig& config,
             predictor->predict(input.graph, input.features, out);
         });
         for (auto _ : state) predictor->predict(input.graph, input.features, out);
-        report(state, network_flops(config, input).total());
+        report(state, network_flops(config, input.graph, input.features).total());
         state.counters["peak_MB"] = peak_mb;
     };
     benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond)->UseRealTime();

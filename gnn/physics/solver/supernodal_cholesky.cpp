@@ -170,7 +170,7 @@ void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
     const auto count = static_cast<size_t>(m_size);
     for (size_t i = 0; i < count; ++i)
         for (size_t k = 0; k < 3; ++k) work[4 * i + k] = static_cast<Real>(b.data()[3 * i + k]);
-    for (const Panel& panel : m_panels)
+    for (const SupernodalPanel& panel : m_panels)
         OfWidth<Real>::eliminate[panel.width - 1](m_values.data() + panel.values_begin,
                                                   m_rows.data() + panel.rows_begin, panel.row_count,
                                                   work + 4 * panel.first, work);

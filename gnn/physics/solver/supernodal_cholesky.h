@@ -11,6 +11,15 @@ namespace cloth {
 /// factor stays sparse: by approximate minimum degree.
 std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix);
 
+/// Columns first .. first + width - 1: a dense lower triangle (its diagonal holds reciprocals),
+/// then the rows below, both row-major with `width` columns.
+struct SupernodalPanel {
+    int first, width;
+    int row_count;        ///< rows below the triangle
+    size_t rows_begin;    ///< in the factor's rows
+    size_t values_begin;  ///< in its values
+};
+
 /// Cholesky factor of a sparse symmetric positive-definite matrix, made for solving many times with
 /// three right-hand sides at once. Columns of equal structure are packed into dense panels of at
 /// most eight columns, and the coordinates of a vertex travel together in one vector register.
@@ -26,10 +35,21 @@ std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix);
 template <class Real>
 class SupernodalCholesky {
  public:
+    SupernodalCholesky() = default;
+
     /// Factorises (n x n; the lower triangle is read) in the order of the unknowns, which
     /// elimination_order() chooses well. False: not positive definite, and `solve` must not be
     /// called.
     bool factorise(const Eigen::SparseMatrix<double>& matrix);
+
+    /// The factor of another precision, rounded.
+    template <class Other>
+    explicit SupernodalCholesky(const SupernodalCholesky<Other>& factor)
+        : m_size(factor.m_size),
+          m_panels(factor.m_panels),
+          m_rows(factor.m_rows),
+          m_values(factor.m_values.begin(), factor.m_values.end()),
+          m_work(factor.m_work.size(), Real(0)) {}
 
     /// x = A^-1 b for three columns (n x 3); b and x may be the same object.
     void solve(const Points& b, Points& x) const;
@@ -38,20 +58,14 @@ class SupernodalCholesky {
     size_t nonzeros() const { return m_values.size(); }  ///< stored, with the padding of the panels
 
  private:
-    /// Columns first .. first + width - 1: a dense lower triangle (its diagonal holds reciprocals),
-    /// then the rows below, both row-major with `width` columns.
-    struct Panel {
-        int first, width;
-        int row_count;        ///< rows below the triangle
-        size_t rows_begin;    ///< in m_rows
-        size_t values_begin;  ///< in m_values
-    };
+    template <class>
+    friend class SupernodalCholesky;
 
     void build_panels(const Eigen::SparseMatrix<double>& lower);
     void append_panel(const Eigen::SparseMatrix<double>& lower, int first, int width);
 
     Eigen::Index m_size = 0;  ///< n
-    std::vector<Panel> m_panels;
+    std::vector<SupernodalPanel> m_panels;
     std::vector<int> m_rows;
     std::vector<Real> m_values;
     mutable std::vector<Real> m_work;  ///< n x 4: x, y, z, unused

@@ -104,6 +104,21 @@ TEST(SupernodalCholesky, SolvesLikeADenseFactorisation) {
     }
 }
 
+TEST(SupernodalCholesky, OfAnotherPrecisionIsTheFactorRounded) {
+    const Garment garment("sheet", sheet(9, 0.5, 0.3), Fabric::soft_cotton());
+    const Eigen::SparseMatrix<double> matrix = dense_system_matrix(garment).sparseView();
+    SupernodalCholesky<double> exact;
+    SupernodalCholesky<float> own;
+    ASSERT_TRUE(exact.factorise(matrix));
+    ASSERT_TRUE(own.factorise(matrix));
+    const SupernodalCholesky<float> rounded(exact);
+    const Points b = noise(matrix.rows(), 1.0, 3);
+    Points expected, found;
+    own.solve(b, expected);
+    rounded.solve(b, found);
+    EXPECT_EQ(found, expected);
+}
+
 TEST(SupernodalCholesky, TheOrderKeepsTheFactorSparse) {
     const Garment garment("sheet", sheet(40, 0.5, 0.5), Fabric::soft_cotton());
     const Eigen::SparseMatrix<double> matrix = dense_system_matrix(garment).sparseView();
