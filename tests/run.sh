@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Installs what is needed, builds, runs every test. Quick the second time.
-#   tests/run.sh [PRESET]   preset of CMakePresets.json: release (default), ci, dev, asan, notorch;
-#                           tsan: the tests with several threads; coverage: prints the share of lines
+#   tests/run.sh [PRESET [CTEST ARGUMENTS...]]
+#     preset of CMakePresets.json: release (default), ci, dev, asan, notorch;
+#     tsan: the tests with several threads; coverage: prints the share of lines
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # compiled objects are found again in another checkout
 export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS=pch_defines,time_macros
 preset="${1:-release}"
+shift || true
 
 case "$preset" in
   asan | notorch) demos/install_packages.sh notorch ;;
@@ -42,7 +44,7 @@ case "$preset" in
     ;;
 esac
 ctest --test-dir "build/$preset" --output-on-failure --no-tests=error --parallel "$jobs" \
-  "${selection[@]}"
+  "${selection[@]}" "$@"
 
 if [ "$preset" = coverage ]; then
   echo "== lines that the tests ran"

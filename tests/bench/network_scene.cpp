@@ -11,8 +11,6 @@
 namespace cloth::test {
 namespace {
 
-constexpr double dt = 1.0 / 30.0;
-
 Obstacle filling_sphere() {
     Obstacle sphere;
     sphere.shape = ObstacleShape::sphere;

@@ -9,6 +9,8 @@
 
 namespace cloth::test {
 
+inline constexpr double dt = 1.0 / 30.0;  ///< s, of the motion's steps
+
 /// The T-shirt (3,991 vertices), on the default body and motion 01_01, frame by frame. Without
 /// assimp-testmodels: on a sphere that fills it.
 class TshirtMotion {

@@ -29,8 +29,6 @@
 namespace cloth::test {
 namespace {
 
-constexpr double dt = 1.0 / 30.0;
-
 /// What a stage is given in a frame.
 struct Moment {
     Boundary boundary;

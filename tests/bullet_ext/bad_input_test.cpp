@@ -10,7 +10,8 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
 
-using namespace cloth;
+namespace cloth::bad_input_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -296,3 +297,5 @@ TEST_F(BadInput, AnObstacleWhosePoseIsNotFiniteIsNone) {
     expect_cloth();
     EXPECT_EQ(node(*body, 0), anchored);
 }
+
+}  // namespace cloth::bad_input_test

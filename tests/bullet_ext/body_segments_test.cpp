@@ -5,7 +5,8 @@
 #include "data/core/errors.h"
 #include "tests/test_meshes.h"
 
-using namespace cloth;
+namespace cloth::body_segments_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -99,3 +100,5 @@ TEST(BodySegments, BadInputIsRefused) {
     EXPECT_THROW(segment_body(body, joints, 0), ArgumentError);
     EXPECT_THROW(segment_body({}, {}, 4), ArgumentError);
 }
+
+}  // namespace cloth::body_segments_test

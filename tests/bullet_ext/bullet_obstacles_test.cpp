@@ -6,7 +6,8 @@
 #include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
 
-using namespace cloth;
+namespace cloth::bullet_obstacles_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -260,3 +261,5 @@ TEST(BulletObstacles, BadAnimatedMeshesAreRefused) {
     const Points nan = triangle(std::numeric_limits<double>::quiet_NaN());
     EXPECT_THROW(set(one_face(), nan, nan), ArgumentError);
 }
+
+}  // namespace cloth::bullet_obstacles_test

@@ -10,7 +10,8 @@
 #include "gnn/model/make_cloth.h"
 #include "tests/bullet_ext/bullet_world.h"
 
-using namespace cloth;
+namespace cloth::bullet_scale_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -196,3 +197,5 @@ TEST(BulletScale, TwiceTheMassMovesTheSame) {
     }
     EXPECT_EQ(shapes[0], shapes[1]);
 }
+
+}  // namespace cloth::bullet_scale_test

@@ -6,7 +6,7 @@
 #include "bullet_ext/bulletShapes.h"
 #include "data/core/mesh.h"
 
-using namespace cloth;
+namespace cloth::bullet_shapes_test {
 
 namespace {
 
@@ -161,3 +161,5 @@ TEST(BulletShapes, SignatureChangesWithSize) {
     sphere.setUnscaledRadius(0.2f);
     EXPECT_NE(shapeSignature(sphere), before);
 }
+
+}  // namespace cloth::bullet_shapes_test

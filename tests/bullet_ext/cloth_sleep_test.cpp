@@ -5,7 +5,8 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
 
-using namespace cloth;
+namespace cloth::cloth_sleep_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -125,3 +126,5 @@ TEST(ClothSleep, HangingClothSleepsUnlessItMustNot) {
         EXPECT_EQ(solver.status().sleepingBodies, must_not ? 0 : 1);
     }
 }
+
+}  // namespace cloth::cloth_sleep_test

@@ -13,7 +13,8 @@
 #include "tests/bullet_ext/physical_steppers.h"
 #include "tests/test_meshes.h"
 
-using namespace cloth;
+namespace cloth::cloth_world_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -176,3 +177,5 @@ TEST(ClothWorld, TwoRunsAreTheSameBits) {
     for (size_t i = 0; i < results[0].size(); ++i)
         for (int c = 0; c < 3; ++c) ASSERT_EQ(results[0][i][c], results[1][i][c]);
 }
+
+}  // namespace cloth::cloth_world_test

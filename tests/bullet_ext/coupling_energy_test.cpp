@@ -14,7 +14,8 @@
 #include "tests/bullet_ext/physical_steppers.h"
 #include "tests/sanitized.h"
 
-using namespace cloth;
+namespace cloth::coupling_energy_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -319,3 +320,5 @@ TEST(CouplingEnergy, RodsOnStiffCloth) {
 TEST(CouplingEnergy, RodsOfSteppersWithATimeStep) {
     check(3000, 100, 0.8, {2.2, 1.0, true, kRare}, rod, 1.0 / 30.0, soft_cotton());
 }
+
+}  // namespace cloth::coupling_energy_test

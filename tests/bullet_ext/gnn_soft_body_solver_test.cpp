@@ -10,7 +10,8 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/test_meshes.h"
 
-using namespace cloth;
+namespace cloth::gnn_soft_body_solver_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -730,3 +731,5 @@ TEST(GnnSolver, StepperThatKeepsFailingHandsTheBodyToBullet) {
     world.step(1.0 / 60.0);
     EXPECT_EQ(solver.status().clothBodies, 1);
 }
+
+}  // namespace cloth::gnn_soft_body_solver_test

@@ -10,7 +10,8 @@
 #include "tests/bullet_ext/physical_steppers.h"
 #include "tests/sanitized.h"
 
-using namespace cloth;
+namespace cloth::pinched_cloth_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -238,3 +239,5 @@ TEST(AnchoredBodies, AnAnchorBeyondTheClothsReachIsTold) {
     EXPECT_NE(messages(solver).find("node 22"), std::string::npos) << messages(solver);
     EXPECT_NE(messages(solver).find("farther away than the cloth reaches"), std::string::npos);
 }
+
+}  // namespace cloth::pinched_cloth_test

@@ -9,7 +9,8 @@
 #include "gnn/model/make_cloth.h"
 #include "tests/bullet_ext/bullet_world.h"
 
-using namespace cloth;
+namespace cloth::run_time_changes_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -211,3 +212,5 @@ TEST(RunTimeChanges, ClosedSurfacesAreLeftToBulletUntilTheyAreAttached) {
     world.step(1.0 / 60.0);
     EXPECT_EQ(solver.status().clothBodies, 1);
 }
+
+}  // namespace cloth::run_time_changes_test

@@ -8,7 +8,8 @@
 #include "tests/bullet_ext/physical_steppers.h"
 #include "tests/test_meshes.h"
 
-using namespace cloth;
+namespace cloth::shared_obstacles_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -126,3 +127,5 @@ TEST(SharedObstacles, SteppersOfOtherTimeStepsShareWhatTheyCan) {
     EXPECT_LE(scene.counts().surface_fits, 6);
     EXPECT_GE(scene.counts().surface_fits, 4);
 }
+
+}  // namespace cloth::shared_obstacles_test

@@ -11,7 +11,8 @@
 #include "tests/bullet_ext/physical_steppers.h"
 #include "tests/sanitized.h"
 
-using namespace cloth;
+namespace cloth::sliding_friction_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -128,3 +129,5 @@ TEST(SlidingFriction, ADynamicBodyGetsWhatTheClothLoses) {
         EXPECT_LT(fastest, 1.01) << fixed;
     }
 }
+
+}  // namespace cloth::sliding_friction_test

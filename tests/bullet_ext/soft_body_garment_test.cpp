@@ -5,7 +5,8 @@
 #include "data/core/errors.h"
 #include "tests/bullet_ext/bullet_world.h"
 
-using namespace cloth;
+namespace cloth::soft_body_garment_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -174,3 +175,5 @@ TEST(GarmentSoftBody, RestLengthsDoNotDependOnTheState) {
     wrong.x = Points::Zero(3, 3);
     EXPECT_THROW(createGarmentSoftBody(info, garment, wrong), ArgumentError);
 }
+
+}  // namespace cloth::soft_body_garment_test

@@ -11,7 +11,8 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
 
-using namespace cloth;
+namespace cloth::time_step_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -156,3 +157,5 @@ TEST(TimeSteps, PinsInWindMoveByTheirVelocity) {
     world.step(1.0 / 60.0);
     EXPECT_NEAR(node(*cloth, 0).x() - before, 0.01, 1e-5);
 }
+
+}  // namespace cloth::time_step_test

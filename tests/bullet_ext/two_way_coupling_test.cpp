@@ -9,7 +9,8 @@
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/bullet_ext/physical_steppers.h"
 
-using namespace cloth;
+namespace cloth::two_way_coupling_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -193,3 +194,5 @@ TEST(TwoWayCoupling, BodiesThatLeaveTheWorldAreForgotten) {
     EXPECT_TRUE(std::isfinite(node(*cloth, 24).y()));
     EXPECT_EQ(solver.status().failedSteps, 0);
 }
+
+}  // namespace cloth::two_way_coupling_test

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+namespace cloth::docs_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -161,3 +163,5 @@ TEST(Docs, CommandsNamePresetsThatThereAre) {
             EXPECT_NE(presets.find("\"name\": \"" + preset + "\""), std::string::npos)
                 << page << " names " << preset;
 }
+
+}  // namespace cloth::docs_test

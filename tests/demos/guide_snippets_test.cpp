@@ -13,6 +13,8 @@
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
 
+namespace cloth::guide_snippets_test {
+
 namespace {
 
 /// A soft body, an object for a character and a moving strip of skin.
@@ -152,3 +154,5 @@ TEST_F(GuideSnippets, Solvers) {
         expect_stepped();
     }
 }
+
+}  // namespace cloth::guide_snippets_test

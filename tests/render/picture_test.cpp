@@ -109,7 +109,7 @@ Rgb pixel_of(const Image& image, const Camera& camera, const Vec3& point) {
     return image.at(static_cast<int>(p.x), static_cast<int>(p.y));
 }
 
-bool equal(const Image& a, const Image& b) {
+bool same_bytes(const Image& a, const Image& b) {
     return std::equal(a.bytes(), a.bytes() + 3 * a.width() * a.height(), b.bytes());
 }
 
@@ -188,7 +188,7 @@ TEST_F(Picture, DepthOffsetChangesTheDepthOnly) {
     SceneMesh back = ball(0.3, 0, 0, 0, kGreen);
     const Image plain = renderer->render(scene_of({back}), camera_at(3));
     back.depth_offset = 0.01;
-    EXPECT_TRUE(equal(renderer->render(scene_of({back}), camera_at(3)), plain));
+    EXPECT_TRUE(same_bytes(renderer->render(scene_of({back}), camera_at(3)), plain));
     const SceneMesh patch = sheet(0.1, 0, 0, 0.295, kRed);
     EXPECT_TRUE(
         is_red(renderer->render(scene_of({back, patch}), camera_at(3)).at(kSize / 2, kSize / 2)));
@@ -285,11 +285,11 @@ TEST_F(Picture, FacesOfAFailedSolverAreLeftOutAndTheRestIsDrawn) {
     }
     EXPECT_LT(faces.rows(), rest.faces->rows());
     rest.faces = std::make_shared<const Faces>(faces);
-    EXPECT_TRUE(equal(image, renderer->render(scene_of({rest}), camera_at(3))));
+    EXPECT_TRUE(same_bytes(image, renderer->render(scene_of({rest}), camera_at(3))));
 
     cloth.vertices.setConstant(std::numeric_limits<double>::quiet_NaN());
-    EXPECT_TRUE(equal(renderer->render(scene_of({cloth}), camera_at(3)),
-                      renderer->render(scene_of({}), camera_at(3))));
+    EXPECT_TRUE(same_bytes(renderer->render(scene_of({cloth}), camera_at(3)),
+                           renderer->render(scene_of({}), camera_at(3))));
 }
 
 TEST_F(Picture, LabelsChangeTheirCornerOnly) {
@@ -319,12 +319,13 @@ TEST_F(Picture, EqualScenesGiveEqualPictures) {
     camera.eye.y() = 1.0;
     const Image first = renderer->render(scene, camera);
     renderer->render(scene_of({}), camera_at(2));
-    EXPECT_TRUE(equal(renderer->render(scene, camera), first));
+    EXPECT_TRUE(same_bytes(renderer->render(scene, camera), first));
     OsmesaSettings settings;
     settings.width = settings.height = kSize;
     settings.shadow_size = 256;
-    EXPECT_TRUE(equal(OsmesaRenderer(settings).render(scene, camera), first)) << "another renderer";
-    EXPECT_TRUE(equal(renderer->render(scene, camera), first)) << "after another renderer";
+    EXPECT_TRUE(same_bytes(OsmesaRenderer(settings).render(scene, camera), first))
+        << "another renderer";
+    EXPECT_TRUE(same_bytes(renderer->render(scene, camera), first)) << "after another renderer";
 }
 
 TEST_F(Picture, AntiAliasingSoftensEdges) {

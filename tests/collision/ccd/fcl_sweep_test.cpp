@@ -6,7 +6,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::fcl_sweep_test {
 namespace {
 
 using namespace test;
@@ -116,4 +116,4 @@ TEST(FclSweep, ThingsThatDoNotMoveOrHaveNoAreaDoNotTouch) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::fcl_sweep_test

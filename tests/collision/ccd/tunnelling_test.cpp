@@ -10,7 +10,7 @@
 #include "data/authoring/sheet.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::tunnelling_test {
 namespace {
 
 using namespace test;
@@ -367,4 +367,4 @@ TEST(Tunnelling, UnusableObstaclesArePassedOver) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::tunnelling_test

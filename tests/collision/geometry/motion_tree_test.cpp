@@ -8,7 +8,7 @@
 #include "collision/ccd/fcl_sweep.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::motion_tree_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(MotionTree, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::motion_tree_test

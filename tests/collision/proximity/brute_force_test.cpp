@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::brute_force_test {
 namespace {
 
 using namespace test;
@@ -52,4 +52,4 @@ TEST(BruteForce, AnObstacleMovesBetweenTheEnds) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::brute_force_test

@@ -4,7 +4,7 @@
 #include "collision/proximity/closest_face_tree.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::closest_face_packet_test {
 namespace {
 
 using namespace test;
@@ -127,4 +127,4 @@ TEST(SpatialOrder, RunsAreGroupsOfNeighbours) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::closest_face_packet_test

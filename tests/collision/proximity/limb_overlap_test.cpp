@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::limb_overlap_test {
 namespace {
 
 using namespace test;
@@ -314,4 +314,4 @@ TEST(LimbOverlap, SettingsOutOfRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::limb_overlap_test

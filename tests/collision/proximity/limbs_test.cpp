@@ -10,7 +10,7 @@
 #include "data/core/errors.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::limbs_test {
 namespace {
 
 using namespace test;
@@ -209,4 +209,4 @@ TEST(Limbs, UnusableOnesAreNamedBySetUpAndDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::limbs_test

@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::metrics_test {
 namespace {
 
 using namespace test;
@@ -109,4 +109,4 @@ TEST(Metrics, JitterIsTheAmplitudeOfAlternation) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::metrics_test

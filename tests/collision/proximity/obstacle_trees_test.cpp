@@ -16,7 +16,7 @@
 #include "tests/collision/proximity/same_bits.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::obstacle_trees_test {
 namespace {
 
 using namespace test;
@@ -400,4 +400,4 @@ TEST(ObstacleTrees, TunnellingIsFoundWithOneFitOfTheMotion) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::obstacle_trees_test

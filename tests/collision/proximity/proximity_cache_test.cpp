@@ -8,7 +8,7 @@
 #include "tests/collision/proximity/same_bits.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::proximity_cache_test {
 namespace {
 
 using namespace test;
@@ -164,4 +164,4 @@ TEST(ProximityCache, SetsOfPointsMayAlternate) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::proximity_cache_test

@@ -7,7 +7,7 @@
 #include "data/core/errors.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::proximity_robustness_test {
 namespace {
 
 using namespace test;
@@ -185,4 +185,4 @@ TEST(ProximityRobustness, ABadRadiusIsRefused) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::proximity_robustness_test

@@ -8,7 +8,7 @@
 #include "data/files/mesh_io.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::proximity_test {
 namespace {
 
 using namespace test;
@@ -222,4 +222,4 @@ TEST(Proximity, SomeRowsCanBeQueriedAgain) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::proximity_test

@@ -7,7 +7,7 @@
 #include "data/core/fabric.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::ridge_contacts_test {
 namespace {
 
 /// A strip of two faces over the edge of a box: two corners above the top, two beside the side.
@@ -131,4 +131,4 @@ TEST(RidgeFinder, AQueryForgetsTheRidgesOfTheLast) {
     EXPECT_TRUE(strip.contacts.ridges.empty());
 }
 
-}  // namespace cloth
+}  // namespace cloth::ridge_contacts_test

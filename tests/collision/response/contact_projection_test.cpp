@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::contact_projection_test {
 namespace {
 
 using namespace test;
@@ -225,4 +225,4 @@ TEST(ContactProjection, SettingsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::contact_projection_test

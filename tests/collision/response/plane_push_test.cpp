@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::plane_push_test {
 namespace {
 
 using namespace test;
@@ -84,4 +84,4 @@ TEST(PlanePush, PlanesThatContradictEachOtherAreBounded) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::plane_push_test

@@ -5,7 +5,7 @@
 #include "collision/proximity/brute_force.h"
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::resolve_test {
 namespace {
 
 using namespace test;
@@ -122,4 +122,4 @@ TEST(ResolvePenetration, OutsideNothingMoves) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::resolve_test

@@ -9,7 +9,7 @@
 #include "collision/geometry/segment.h"
 #include "tests/collision/self/self_scenes.h"
 
-namespace cloth {
+namespace cloth::self_proximity_test {
 namespace {
 
 using namespace test;
@@ -210,4 +210,4 @@ TEST(SelfProximity, NumbersThatAreNotFiniteMakeNoPair) {
     for (const SelfPair& pair : proximity.pairs()) EXPECT_TRUE(pair.normal.allFinite());
 }
 
-}  // namespace cloth
+}  // namespace cloth::self_proximity_test

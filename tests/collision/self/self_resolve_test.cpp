@@ -5,7 +5,7 @@
 #include "collision/self/self_tangles.h"
 #include "tests/collision/self/self_scenes.h"
 
-namespace cloth {
+namespace cloth::self_resolve_test {
 namespace {
 
 using namespace test;
@@ -190,4 +190,4 @@ TEST(SelfResolver, RefusesSettingsOutOfRange) {
     EXPECT_THROW(SelfResolver(strip(), bad), std::invalid_argument);
 }
 
-}  // namespace cloth
+}  // namespace cloth::self_resolve_test

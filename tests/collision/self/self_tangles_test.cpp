@@ -6,7 +6,7 @@
 
 #include "tests/collision/self/self_scenes.h"
 
-namespace cloth {
+namespace cloth::self_tangles_test {
 namespace {
 
 using namespace test;
@@ -93,4 +93,4 @@ TEST(SelfTangles, SameForAnyNumberOfThreadsAndNoneInNumbersThatAreNotFinite) {
     EXPECT_TRUE(one.find(x).empty());
 }
 
-}  // namespace cloth
+}  // namespace cloth::self_tangles_test

@@ -7,7 +7,8 @@
 #include "data/core/paths.h"
 #include "tests/data/authoring/garment_checks.h"
 
-using namespace cloth;
+namespace cloth::garment_slow_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -77,3 +78,5 @@ TEST(MakeGarment, RecipeForAnotherBodyIsRefused) {
     recipe.landmarks["elbow"].y() = 0.4;
     EXPECT_THROW(make_garment(default_body(), recipe), ArgumentError);
 }
+
+}  // namespace cloth::garment_slow_test

@@ -21,7 +21,8 @@
 #include "data/files/mesh_io.h"
 #include "tests/data/authoring/garment_checks.h"
 
-using namespace cloth;
+namespace cloth::garment_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -116,7 +117,7 @@ TEST_P(CommittedBottom, HasAWaistbandThatIsShorterAtRestThanWorn) {
 INSTANTIATE_TEST_SUITE_P(All, CommittedBottom, testing::ValuesIn(bottoms()),
                          [](const auto& test) { return test.param; });
 
-TEST(GarmentAssets, ListHasEachGarmentOnceAndNoWornShapes) {
+TEST(CommittedGarments, ListHasEachGarmentOnceAndNoWornShapes) {
     const std::vector<std::string> names = garment_names();
     for (const char* name : {"tshirt", "tshirt_1000", "tank_top", "long_top", "shirt", "pants",
                              "shorts", "skirt", "dress", "dress_1000"})
@@ -125,7 +126,7 @@ TEST(GarmentAssets, ListHasEachGarmentOnceAndNoWornShapes) {
         EXPECT_EQ(std::count(names.begin(), names.end(), name), 0) << name;
 }
 
-TEST(GarmentAssets, AWrongNameIsAnsweredWithTheRightOnes) {
+TEST(CommittedGarments, AWrongNameIsAnsweredWithTheRightOnes) {
     try {
         load_garment_mesh("trousers");
         FAIL() << "there are no trousers";
@@ -136,7 +137,7 @@ TEST(GarmentAssets, AWrongNameIsAnsweredWithTheRightOnes) {
     }
 }
 
-TEST(GarmentAssets, GarmentsWithoutAWaistbandAreWornAtRest) {
+TEST(CommittedGarments, GarmentsWithoutAWaistbandAreWornAtRest) {
     EXPECT_EQ(load_garment_start("tshirt_1000").x, load_garment_mesh("tshirt_1000").vertices);
 }
 
@@ -381,3 +382,5 @@ TEST(Clearance, SheetThroughABallIsPushedOut) {
     EXPECT_GE(smallest_clearance(sheet, body), 0.004);
     EXPECT_LT(sheet.vertices.col(1).maxCoeff(), 0.32) << "no spikes";
 }
+
+}  // namespace cloth::garment_test

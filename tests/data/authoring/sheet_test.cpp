@@ -9,7 +9,7 @@
 #include "data/core/errors.h"
 #include "data/core/garment.h"
 
-using namespace cloth;
+namespace cloth::sheet_test {
 
 TEST(Sheet, HasTheAskedSizeAndVertexCount) {
     for (int target : {9, 60, 400, 2500}) {
@@ -90,3 +90,5 @@ TEST(Sheet, ArgumentsOutOfRangeAreRefused) {
     EXPECT_THROW(make_sheet(1.0, 0.01, 100), ArgumentError);
     EXPECT_THROW(make_sheet(1.0, 0.06, 9), ArgumentError) << "too few for such a strip";
 }
+
+}  // namespace cloth::sheet_test

@@ -6,7 +6,8 @@
 #include "tests/data/files/file_fixture.h"
 #include "tests/ranges.h"
 
-using namespace cloth;
+namespace cloth::animated_body_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -229,3 +230,5 @@ TEST(AnimatedBody, SettingsOutOfRangeAreRefused) {
     test::expect_range("AnimationSettings.start_ramp", &S::start_ramp, 0.0, 10.0, use);
     test::expect_range("AnimationSettings.friction", &S::friction, 0.0, 1.5, use);
 }
+
+}  // namespace cloth::animated_body_test

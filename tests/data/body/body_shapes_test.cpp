@@ -6,7 +6,8 @@
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
 
-using namespace cloth;
+namespace cloth::body_shapes_test {
+
 using namespace cloth::test;
 
 using ShapeTargetFile = FileTest;
@@ -95,3 +96,5 @@ TEST(BodyShapes, SlidersDoWhatTheySay) {
     EXPECT_GT(depth_of_waist(1.0), depth_of_waist(0.0) + 0.01);
     EXPECT_LT(depth_of_waist(-1.0), depth_of_waist(0.0) - 0.005);
 }
+
+}  // namespace cloth::body_shapes_test

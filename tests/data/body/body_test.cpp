@@ -7,7 +7,8 @@
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
 
-using namespace cloth;
+namespace cloth::body_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -214,3 +215,5 @@ TEST_F(RigRecipeFile, ARecipeForAnotherMeshIsRefused) {
     cube.vertices = Points::Random(8, 3);
     EXPECT_THROW(Body(cube, recipe), ArgumentError);
 }
+
+}  // namespace cloth::body_test

@@ -12,7 +12,8 @@
 #include "data/files/mesh_io.h"
 #include "tests/data/authoring/garment_checks.h"
 
-using namespace cloth;
+namespace cloth::garment_fit_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -93,3 +94,5 @@ TEST(FitGarment, OtherBodiesAreRefused) {
     body(17, 1) = std::numeric_limits<double>::quiet_NaN();
     EXPECT_THROW(fit_garment(shirt(), default_body(), body), ArgumentError);
 }
+
+}  // namespace cloth::garment_fit_test

@@ -8,7 +8,8 @@
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
 
-using namespace cloth;
+namespace cloth::motion_test {
+
 using namespace cloth::test;
 using Eigen::Quaterniond;
 
@@ -221,3 +222,5 @@ TEST(Motions, SharedClipsHaveNoCalibrationPose) {
                   load_bvh(file, {0.0, FirstFrame::keep}).frame_count())
             << file;
 }
+
+}  // namespace cloth::motion_test

@@ -7,7 +7,7 @@
 #include "data/core/surface_distance.h"
 #include "data/files/garment_assets.h"
 
-using namespace cloth;
+namespace cloth::outfit_test {
 
 namespace {
 
@@ -64,3 +64,5 @@ TEST(Outfit, WrongNamesAreNamed) {
 }
 
 }  // namespace
+
+}  // namespace cloth::outfit_test

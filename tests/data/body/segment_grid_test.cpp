@@ -7,7 +7,7 @@
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
 
-using namespace cloth;
+namespace cloth::segment_grid_test {
 
 TEST(SegmentGrid, ASegmentHitsTheSquareItCrosses) {
     Points x(4, 3);
@@ -45,3 +45,5 @@ TEST(SegmentGrid, AgreesWithTestingEveryFace) {
     EXPECT_GT(hits, 200);
     EXPECT_LT(hits, 1800);
 }
+
+}  // namespace cloth::segment_grid_test

@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 
-using namespace cloth;
+namespace cloth::skin_binding_test {
 
 namespace {
 
@@ -70,3 +70,5 @@ TEST(SkinBinding, ABandFollowsACharacter) {
     EXPECT_LT((Vec3(bent.row(0)) - Vec3(-1, 1.25, 0.02)).norm(), 1e-6);
     EXPECT_LT((Vec3(bent.row(1)) - Vec3(0.25, 0, 0.02)).norm(), 1e-6);
 }
+
+}  // namespace cloth::skin_binding_test

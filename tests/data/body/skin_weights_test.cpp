@@ -11,7 +11,7 @@
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 
-using namespace cloth;
+namespace cloth::skin_weights_test {
 
 namespace {
 
@@ -180,3 +180,5 @@ TEST(SkinWeights, OfTheDefaultBodyAgreeWithHandMadeOnes) {
     EXPECT_LT(difference / static_cast<double>(expected.rows()), 0.25);
     EXPECT_GT(agreeing / static_cast<double>(expected.rows()), 0.92);
 }
+
+}  // namespace cloth::skin_weights_test

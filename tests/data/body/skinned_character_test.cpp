@@ -9,7 +9,8 @@
 #include "tests/data/files/file_fixture.h"
 #include "tests/ranges.h"
 
-using namespace cloth;
+namespace cloth::skinned_character_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -140,3 +141,5 @@ TEST_F(CharacterFile, WhatIsMissingIsNamed) {
     const std::string duck = model_path("Collada/duck.dae");
     expect_load_error([&] { SkinnedCharacter character(duck); }, duck, "has no animation");
 }
+
+}  // namespace cloth::skinned_character_test

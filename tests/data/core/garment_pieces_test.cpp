@@ -5,7 +5,7 @@
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
 
-namespace cloth {
+namespace cloth::garment_pieces_test {
 namespace {
 
 Garment piece(int vertices, std::vector<int> pins = {}, Fabric fabric = Fabric::soft_cotton()) {
@@ -47,4 +47,4 @@ TEST(GarmentPieces, AreNumberedInTheOrderOfTheirVertices) {
         EXPECT_EQ(pieces[static_cast<size_t>(v)], v < 50 ? 0 : v < 80 ? 1 : 2);
 }
 
-}  // namespace cloth
+}  // namespace cloth::garment_pieces_test

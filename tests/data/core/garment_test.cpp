@@ -7,7 +7,7 @@
 
 #include "data/core/errors.h"
 
-using namespace cloth;
+namespace cloth::garment_test {
 
 namespace {
 
@@ -57,3 +57,5 @@ TEST(Garment, RefusesBadInputByName) {
         EXPECT_NE(std::string(error.what()).find("pin 7"), std::string::npos);
     }
 }
+
+}  // namespace cloth::garment_test

@@ -4,7 +4,8 @@
 
 #include "tests/data/files/file_fixture.h"
 
-using namespace cloth;
+namespace cloth::paths_test {
+
 using namespace cloth::test;
 
 using Paths = FileTest;
@@ -31,3 +32,5 @@ TEST_F(Paths, EnvironmentVariablesMoveTheFolders) {
     unsetenv("CLOTH_MODELS");
     unsetenv("CLOTH_SHARED_DATA");
 }
+
+}  // namespace cloth::paths_test

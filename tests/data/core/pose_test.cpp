@@ -6,7 +6,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::pose_test {
 namespace {
 
 using namespace test;
@@ -59,4 +59,4 @@ TEST(Transformed, MovesEachPoint) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::pose_test

@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::primitives_test {
 namespace {
 
 using namespace test;
@@ -101,4 +101,4 @@ TEST(Primitives, BadSizesAreNotUsable) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::primitives_test

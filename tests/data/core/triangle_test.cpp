@@ -4,7 +4,7 @@
 
 #include "tests/test_meshes.h"
 
-namespace cloth {
+namespace cloth::triangle_test {
 namespace {
 
 using namespace test;
@@ -94,4 +94,4 @@ TEST(Triangle, AParallelLineDoesNotMeetIt) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::triangle_test

@@ -6,7 +6,7 @@
 
 #include "data/core/errors.h"
 
-using namespace cloth;
+namespace cloth::weld_test {
 
 namespace {
 
@@ -72,3 +72,5 @@ TEST(Weld, UnusableArgumentsAreRefused) {
     mesh.faces(1, 1) = 6;
     EXPECT_THROW(weld_mesh(mesh, 1e-3), ArgumentError);
 }
+
+}  // namespace cloth::weld_test

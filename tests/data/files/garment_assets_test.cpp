@@ -3,7 +3,8 @@
 #include "data/files/mesh_io.h"
 #include "tests/data/files/file_fixture.h"
 
-using namespace cloth;
+namespace cloth::garment_assets_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -54,3 +55,5 @@ TEST_F(GarmentAssets, WrongNamesAndPathsAreNamed) {
 }
 
 }  // namespace
+
+}  // namespace cloth::garment_assets_test

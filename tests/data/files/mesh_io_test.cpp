@@ -9,7 +9,7 @@
 
 #include "data/core/errors.h"
 
-using namespace cloth;
+namespace cloth::mesh_io_test {
 
 namespace {
 
@@ -320,3 +320,5 @@ TEST_F(MeshIo, WritingIntoAMissingFolderFails) {
     TriMesh mesh;
     EXPECT_THROW(save_obj(path("no/such/folder.obj"), mesh), LoadError);
 }
+
+}  // namespace cloth::mesh_io_test

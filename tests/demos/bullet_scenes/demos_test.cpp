@@ -10,7 +10,7 @@
 #include "demos/bullet_scenes/scene_run.h"
 #include "tests/demos/bullet_scenes/print_scene.h"
 
-using namespace cloth;
+namespace cloth::demos_test {
 
 namespace {
 
@@ -131,3 +131,5 @@ TEST(DemoFlyers, GlideAtHighRatesToo) {
     EXPECT_TRUE(fast.finite);
     EXPECT_LT(fast.node_speed_max, 1.5 * slow.node_speed_max);
 }
+
+}  // namespace cloth::demos_test

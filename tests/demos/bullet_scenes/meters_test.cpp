@@ -9,7 +9,7 @@
 #include "demos/bullet_scenes/scene_meters.h"
 #include "demos/bullet_scenes/step_lengths.h"
 
-using namespace cloth;
+namespace cloth::meters_test {
 
 namespace {
 
@@ -174,3 +174,5 @@ TEST(StepLengths, RandomOnesFillTheTimeAndDependOnTheSeedAlone) {
     plan.seed = 2;
     EXPECT_NE(steps, step_lengths(plan, 10.0));
 }
+
+}  // namespace cloth::meters_test

@@ -10,7 +10,7 @@
 #include "demos/bullet_scenes/worlds/scenes.h"
 #include "demos/compare/arguments.h"
 
-using namespace cloth;
+namespace cloth::options_test {
 
 namespace {
 
@@ -84,3 +84,5 @@ TEST(BulletScenes, RowsAreJsonWithNullsForWhatHasNoMeaning) {
     EXPECT_EQ(json.at("ms_median"), 1.5);
     EXPECT_EQ(json.at("rate_hz"), 60);
 }
+
+}  // namespace cloth::options_test

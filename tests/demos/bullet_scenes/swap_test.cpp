@@ -9,7 +9,7 @@
 #include "demos/bullet_scenes/scene_run.h"
 #include "tests/demos/bullet_scenes/print_scene.h"
 
-using namespace cloth;
+namespace cloth::swap_test {
 
 namespace {
 
@@ -135,3 +135,5 @@ TEST(SwapShapes, HangingAndDrapedSheetsComeToBulletsShape) {
                 << name << " " << solver;
     }
 }
+
+}  // namespace cloth::swap_test

@@ -7,7 +7,7 @@
 #include "demos/compare/arguments.h"
 #include "demos/compare/solver_factory.h"
 
-using namespace cloth;
+namespace cloth::body_scene_test {
 
 namespace {
 
@@ -95,3 +95,5 @@ TEST(BodySceneLoss, LegsThatMoveAloneDoNotCount) {
         if (skin(i, 1) < hem - 0.1) skin(i, 1) += 0.8;
     EXPECT_EQ(scene.loss(boundary, scene.garment().rest().vertices), "");
 }
+
+}  // namespace cloth::body_scene_test

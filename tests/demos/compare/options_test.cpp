@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-using namespace cloth;
+namespace cloth::options_test {
 
 TEST(CompareOptions, DefaultsCompareTheShippedSolvers) {
     const CompareOptions options = parse_compare_options({});
@@ -46,3 +46,5 @@ TEST(CompareOptions, RefusesWhatItDoesNotUnderstandByName) {
     EXPECT_NE(message({"--solvers", ","}).find("--solvers"), std::string::npos);
     EXPECT_NE(message({"--help"}).find("--reference-frames"), std::string::npos);
 }
+
+}  // namespace cloth::options_test

@@ -12,7 +12,8 @@
 #include "demos/compare/options.h"
 #include "demos/compare/solver_factory.h"
 
-using namespace cloth;
+namespace cloth::regression_test {
+
 using nlohmann::json;
 
 namespace {
@@ -107,3 +108,5 @@ INSTANTIATE_TEST_SUITE_P(Solvers, TshirtRegression, ::testing::ValuesIn(solver_n
                                  if (c == '-' || c == '+') c = '_';
                              return name;
                          });
+
+}  // namespace cloth::regression_test

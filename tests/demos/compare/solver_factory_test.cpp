@@ -5,7 +5,7 @@
 #include "demos/compare/arguments.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::solver_factory_test {
 
 namespace {
 
@@ -63,3 +63,5 @@ TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
         EXPECT_NE(refusal(name).find("solver " + name), std::string::npos) << refusal(name);
     EXPECT_NE(refusal("nothing").find("xpbd-N"), std::string::npos) << refusal("nothing");
 }
+
+}  // namespace cloth::solver_factory_test

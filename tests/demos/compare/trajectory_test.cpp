@@ -10,7 +10,7 @@
 #include "data/core/errors.h"
 #include "demos/compare/statistics.h"
 
-using namespace cloth;
+namespace cloth::trajectory_test {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST(Statistics, QuantilesInterpolateAndSkipUnknownValues) {
     EXPECT_TRUE(std::isnan(median({})));
     EXPECT_TRUE(std::isnan(mean({})));
 }
+
+}  // namespace cloth::trajectory_test

@@ -10,7 +10,7 @@
 #include "demos/compare/references.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 
-using namespace cloth;
+namespace cloth::waistband_test {
 
 namespace {
 
@@ -56,3 +56,5 @@ TEST_P(Waistband, StaysOnTheWaistWhileTheBodyJumps) {
 INSTANTIATE_TEST_SUITE_P(Bottoms, Waistband,
                          testing::Values("pants_1000", "shorts_1000", "skirt_1000"),
                          [](const auto& test) { return test.param; });
+
+}  // namespace cloth::waistband_test

@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "demos/doc_tables/markdown_page.h"
 
-using namespace cloth;
+namespace cloth::page_test {
 
 namespace {
 
@@ -85,3 +85,5 @@ TEST(Page, PagesAreFoundButNotThoseOfBuilds) {
               (std::vector<std::string>{(root / "README.md").string(),
                                         (root / "demos/page.md").string()}));
 }
+
+}  // namespace cloth::page_test

@@ -12,7 +12,8 @@
 #include "demos/doc_tables/measure.h"
 #include "demos/doc_tables/registry.h"
 
-using namespace cloth;
+namespace cloth::table_test {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -221,3 +222,5 @@ TEST(Registry, SelfContactIsTheBenchmarksMedians) {
     ASSERT_EQ(table.rows.size(), 4u);
     EXPECT_EQ(table.rows[3], (std::vector<std::string>{"folded in half", "4000", "7.0", "8.0"}));
 }
+
+}  // namespace cloth::table_test

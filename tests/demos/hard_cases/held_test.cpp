@@ -10,7 +10,7 @@
 
 #include "demos/hard_cases/contest.h"
 
-using namespace cloth;
+namespace cloth::held_test {
 
 namespace {
 
@@ -82,3 +82,5 @@ TEST(KnownFailures, NameCasesThatThereAre) {
         EXPECT_FALSE(reason.empty());
     }
 }
+
+}  // namespace cloth::held_test

@@ -11,7 +11,7 @@
 #include "demos/hard_cases/contest.h"
 #include "demos/hard_cases/motion_cases.h"
 
-using namespace cloth;
+namespace cloth::options_test {
 
 namespace {
 
@@ -128,3 +128,5 @@ TEST(HardCases, FramesScaleAndTheSoakCasesLast) {
     EXPECT_EQ(scaled_frames(hard_case("needles"), 1e-3), 1);
     EXPECT_EQ(scaled_frames(hard_case("soak-rest"), 1.0, 10000), 10000);
 }
+
+}  // namespace cloth::options_test

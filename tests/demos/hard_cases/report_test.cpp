@@ -11,7 +11,7 @@
 #include "demos/hard_cases/case_scenes.h"
 #include "demos/hard_cases/contest.h"
 
-using namespace cloth;
+namespace cloth::report_test {
 
 namespace {
 
@@ -207,3 +207,5 @@ TEST(HardReport, RowsOfAnotherProgramAreNotMixedIn) {
         EXPECT_NE(std::string(error.what()).find("commit another"), std::string::npos);
     }
 }
+
+}  // namespace cloth::report_test

@@ -17,7 +17,7 @@
 #include "demos/hard_cases/pictures.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 
-using namespace cloth;
+namespace cloth::scenes_test {
 
 namespace {
 
@@ -176,3 +176,5 @@ TEST(HardScenes, HandsDoNotGoThroughTheShirt) {
     EXPECT_GE(frames_tunnelled(hard, 1.0), 5) << "the scene is no test";
     EXPECT_LE(frames_tunnelled(hard, GuardSettings().watch_motion), 1);
 }
+
+}  // namespace cloth::scenes_test

@@ -8,7 +8,7 @@
 
 #include "data/core/read_file.h"
 
-using namespace cloth;
+namespace cloth::provenance_test {
 
 TEST(Provenance, SaysCommitMachineThreadsAndDate) {
     const nlohmann::ordered_json provenance = provenance_json(2);
@@ -31,3 +31,5 @@ TEST(Provenance, SourcesOutsideGitAreOfNoKnownCommit) {
     EXPECT_NE(read_file((folder / "commit.cpp").string()).find("return \"unknown\";"),
               std::string::npos);
 }
+
+}  // namespace cloth::provenance_test

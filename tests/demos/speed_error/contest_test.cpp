@@ -10,7 +10,7 @@
 #include "demos/speed_error/reference_cache.h"
 #include "demos/speed_error/scene_report.h"
 
-using namespace cloth;
+namespace cloth::contest_test {
 
 namespace {
 
@@ -150,3 +150,5 @@ TEST(Contest, UnknownNamesAreRefusedBeforeTheDearPart) {
     EXPECT_THROW(make_scene({"moon", "soft", 3, 100}), UsageError);
     EXPECT_THROW(make_scene({"sheet", "silk", 3, 100}), UsageError);
 }
+
+}  // namespace cloth::contest_test

@@ -8,7 +8,7 @@
 #include "demos/speed_error/pinning.h"
 #include "demos/speed_error/scenes.h"
 
-using namespace cloth;
+namespace cloth::options_test {
 
 namespace {
 
@@ -94,3 +94,5 @@ TEST(SpeedErrorOptions, DefaultSolversHaveEachNetworkInEachBackend) {
 TEST(Pinning, MoreThreadsThanCoresAreRefused) {
     EXPECT_THROW(pin_threads(5000), UsageError);
 }
+
+}  // namespace cloth::options_test

@@ -5,7 +5,7 @@
 #include "demos/speed_error/plots.h"
 #include "demos/speed_error/solver_row.h"
 
-using namespace cloth;
+namespace cloth::rows_test {
 
 namespace {
 
@@ -108,3 +108,5 @@ TEST(SpeedErrorPlots, HaveEveryFamilyEverySettingAndEveryFailure) {
     }
     EXPECT_TRUE(speed_error_plots({}).empty());
 }
+
+}  // namespace cloth::rows_test

@@ -11,7 +11,7 @@
 #include "demos/train_series/series_run.h"
 #include "render/replaced_file.h"
 
-namespace cloth {
+namespace cloth::train_series_test {
 namespace {
 
 const char* const trains = R"(while [ $# -gt 0 ]; do
@@ -150,4 +150,4 @@ TEST(TrainingSeriesNames, AreUnique) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::train_series_test

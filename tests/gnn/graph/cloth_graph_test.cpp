@@ -7,7 +7,7 @@
 
 #include "data/authoring/sheet.h"
 
-namespace cloth {
+namespace cloth::cloth_graph_test {
 namespace {
 
 Garment sheet() {
@@ -90,4 +90,4 @@ TEST(SamplingSchedule, IsAFunctionOfTheSeed) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::cloth_graph_test

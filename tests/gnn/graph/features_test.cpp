@@ -8,7 +8,7 @@
 #include "data/authoring/sheet.h"
 #include "gnn/physics/stepper/guess.h"
 
-namespace cloth {
+namespace cloth::features_test {
 namespace {
 
 constexpr double dt = 1.0 / 30.0;
@@ -198,4 +198,4 @@ TEST(FeatureStatistics, CountMaskedRowsOnlyWhereAsked) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::features_test

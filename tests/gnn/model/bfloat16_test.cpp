@@ -12,7 +12,7 @@
 #include "tests/gnn/model/random_block.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth {
+namespace cloth::bfloat16_test {
 namespace {
 
 using namespace test;
@@ -285,4 +285,4 @@ INSTANTIATE_TEST_SUITE_P(Variants, Bfloat16Network,
                          ::testing::Values("baseline", "sampling", "reduction", "fast"));
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::bfloat16_test

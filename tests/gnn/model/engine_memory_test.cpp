@@ -26,7 +26,7 @@ extern "C" void* aligned_alloc(size_t alignment, size_t bytes) {
 }
 #endif
 
-namespace cloth {
+namespace cloth::engine_memory_test {
 namespace {
 
 using namespace test;
@@ -124,4 +124,4 @@ TEST(EngineMemory, AGarmentWithoutVerticesOrEdgesIsNoTrouble) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::engine_memory_test

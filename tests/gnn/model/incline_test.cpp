@@ -13,7 +13,7 @@
 #include "data/core/paths.h"
 #include "gnn/model/make_cloth.h"
 
-namespace cloth {
+namespace cloth::incline_test {
 namespace {
 
 constexpr double dt = 1.0 / 30.0;
@@ -95,4 +95,4 @@ INSTANTIATE_TEST_SUITE_P(Steppers, Incline,
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::incline_test

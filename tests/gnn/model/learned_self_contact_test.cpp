@@ -7,7 +7,7 @@
 #include "gnn/model/make_cloth.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
-namespace cloth {
+namespace cloth::learned_self_contact_test {
 namespace {
 
 /// A network that leaves the guess as it is.
@@ -49,4 +49,4 @@ TEST(LearnedSelfContact, AreKeptApartByTheIterationsAndContactProjection) {
     EXPECT_EQ(most_tangles(4e-3), 0);
 }
 
-}  // namespace cloth
+}  // namespace cloth::learned_self_contact_test

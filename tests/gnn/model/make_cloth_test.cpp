@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "tests/gnn/model/random_weights.h"
 
-namespace cloth {
+namespace cloth::make_cloth_test {
 namespace {
 
 /// A network that answers the same for every vertex.
@@ -249,4 +249,4 @@ TEST_F(NetworkStep, WithoutANetworkClothIsPhysicsAlone) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::make_cloth_test

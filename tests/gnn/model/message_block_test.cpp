@@ -10,7 +10,7 @@
 
 #include "tests/gnn/model/random_block.h"
 
-namespace cloth {
+namespace cloth::message_block_test {
 namespace {
 
 using namespace test;
@@ -167,4 +167,4 @@ TEST_P(EveryInstructionSet, GradientsEqualFiniteDifferences) {
 INSTANTIATE_TEST_SUITE_P(MessageBlock, EveryInstructionSet, all_instructions(), name_of);
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::message_block_test

@@ -9,7 +9,7 @@
 #include "data/core/paths.h"
 #include "gnn/model/make_cloth.h"
 
-namespace cloth {
+namespace cloth::rest_shape_test {
 namespace {
 
 constexpr double dt = 1.0 / 30.0;
@@ -76,4 +76,4 @@ TEST(RestShape, SolverAndLearnedClothHangWhereTheReferenceDoes) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::rest_shape_test

@@ -9,7 +9,7 @@
 
 #include "data/core/errors.h"
 
-namespace cloth {
+namespace cloth::weights_test {
 namespace {
 
 Weights small_weights() {
@@ -167,4 +167,4 @@ TEST(ModelConfig, SurvivesItsText) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::weights_test

@@ -10,7 +10,7 @@
 #include "gnn/train/network.h"
 #include "gnn/train/torch_predictor.h"
 
-using namespace cloth;
+namespace cloth::engine_test {
 
 namespace {
 
@@ -141,3 +141,5 @@ TEST(Engine, FeaturesOfAnotherGarmentGiveNoFiniteNumber) {
     engine.predict(scene.graph, other.features, out);
     EXPECT_FALSE(out.allFinite());
 }
+
+}  // namespace cloth::engine_test

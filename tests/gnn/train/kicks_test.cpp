@@ -5,7 +5,7 @@
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
 
-namespace cloth {
+namespace cloth::kicks_test {
 namespace {
 
 class Kicks : public testing::Test {
@@ -88,4 +88,4 @@ TEST_F(Kicks, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::kicks_test

@@ -9,7 +9,7 @@
 #include "gnn/physics/solver/quasi_newton.h"
 #include "gnn/physics/stepper/guess.h"
 
-namespace cloth {
+namespace cloth::loss_test {
 namespace {
 
 /// A small pinned sheet that is thrown at a plane.
@@ -131,4 +131,4 @@ TEST(LossNames, UnknownOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::loss_test

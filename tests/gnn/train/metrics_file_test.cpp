@@ -9,7 +9,7 @@
 #include "data/core/errors.h"
 #include "gnn/train/time_budget.h"
 
-namespace cloth {
+namespace cloth::metrics_file_test {
 namespace {
 
 std::string text_of(const std::string& path) {
@@ -88,4 +88,4 @@ TEST(TimeBudget, ShareOfNothingIsNever) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::metrics_file_test

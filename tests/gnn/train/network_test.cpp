@@ -7,7 +7,7 @@
 #include "gnn/train/message_op.h"
 #include "gnn/train/torch_predictor.h"
 
-namespace cloth {
+namespace cloth::network_test {
 namespace {
 
 using torch::Tensor;
@@ -254,4 +254,4 @@ TEST(Network, RefusesWeightsOfAnotherConfiguration) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::network_test

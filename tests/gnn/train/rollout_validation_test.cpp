@@ -9,7 +9,7 @@
 #include "data/core/errors.h"
 #include "gnn/train/network.h"
 
-namespace cloth {
+namespace cloth::rollout_validation_test {
 namespace {
 
 ModelConfig tiny_model() {
@@ -162,4 +162,4 @@ TEST_F(Rollouts, RefuseSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::rollout_validation_test

@@ -6,7 +6,7 @@
 #include "data/core/errors.h"
 #include "data/files/garment_assets.h"
 
-namespace cloth {
+namespace cloth::skinned_start_test {
 namespace {
 
 class SkinnedStart : public testing::Test {
@@ -92,4 +92,4 @@ TEST_F(SkinnedStart, RefusesSettingsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::skinned_start_test

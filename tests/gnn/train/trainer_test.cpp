@@ -11,7 +11,7 @@
 
 #include "data/core/errors.h"
 
-namespace cloth {
+namespace cloth::trainer_test {
 namespace {
 
 TrainerSettings tiny(const std::string& name, const std::string& recipe = "quick") {
@@ -287,4 +287,4 @@ TEST(SceneRandom, HasTheMomentsItPromises) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::trainer_test

@@ -8,7 +8,7 @@
 #include "data/files/garment_assets.h"
 #include "gnn/train/body_world.h"
 
-using namespace cloth;
+namespace cloth::training_worlds_test {
 
 TEST(TrainingGarments, AreCommittedNotTooLargeAndLeaveOneOut) {
     const std::vector<std::string> names = training_garments();
@@ -42,3 +42,5 @@ TEST(CarriedAlong, AGarmentMovesWithTheSkinUnderIt) {
     const Points carried = carried_along(skirt.vertices, skin, moved);
     EXPECT_LT((carried.rowwise() - Eigen::RowVector3d(0.1, -0.2, 0.3)).cwiseAbs().maxCoeff(), 1e-9);
 }
+
+}  // namespace cloth::training_worlds_test

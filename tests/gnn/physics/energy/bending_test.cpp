@@ -5,7 +5,8 @@
 #include "gnn/physics/energy/angle.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::bending_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -161,3 +162,5 @@ TEST_P(BendingTest, CollapsedFacesStayFinite) {
 INSTANTIATE_TEST_SUITE_P(Fabrics, BendingTest,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);
+
+}  // namespace cloth::bending_test

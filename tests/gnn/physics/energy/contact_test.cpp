@@ -2,7 +2,8 @@
 
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::contact_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -77,3 +78,5 @@ TEST_F(ContactTest, MovesWithTheSurface) {
     contact.begin_step(moved, eps);
     EXPECT_NEAR(contact.value(x.rowwise() + shift, weight), before, 1e-10 * before);
 }
+
+}  // namespace cloth::contact_test

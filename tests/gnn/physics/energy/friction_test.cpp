@@ -2,7 +2,8 @@
 
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::friction_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -125,3 +126,5 @@ TEST_F(FrictionTest, HessianEqualsFiniteDifferences) {
         [&](const Points& y, Points& g) { gradient(y, g); }, x, direction, 1e-6);
     expect_close(product, numeric, 1e-6);
 }
+
+}  // namespace cloth::friction_test

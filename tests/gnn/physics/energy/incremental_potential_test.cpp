@@ -6,7 +6,8 @@
 #include "data/core/errors.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::incremental_potential_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -242,3 +243,5 @@ TEST_P(PotentialTest, SettingsOutOfRangeAreRefused) {
 INSTANTIATE_TEST_SUITE_P(Fabrics, PotentialTest,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);
+
+}  // namespace cloth::incremental_potential_test

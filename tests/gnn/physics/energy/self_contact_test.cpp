@@ -5,7 +5,8 @@
 #include "gnn/physics/energy/incremental_potential.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::self_contact_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -159,3 +160,5 @@ TEST(SelfContact, RefusesSettingsOutOfRange) {
         EXPECT_NE(std::string(error.what()).find("use"), std::string::npos);
     }
 }
+
+}  // namespace cloth::self_contact_test

@@ -4,7 +4,8 @@
 
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::strain_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -145,3 +146,5 @@ TEST_P(StrainTest, CollapsedTrianglesStayFinite) {
 INSTANTIATE_TEST_SUITE_P(Fabrics, StrainTest,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);
+
+}  // namespace cloth::strain_test

@@ -8,7 +8,8 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-using namespace cloth;
+namespace cloth::time_integration_test {
+
 using cloth::test::sheet_on_sphere;
 using cloth::test::SolverScene;
 using cloth::test::swinging_sheet;
@@ -139,3 +140,5 @@ TEST(TimeIntegration, Bdf2DoesNotThrowClothBackFromASphere) {
         EXPECT_LT(scene.state.x.col(1).maxCoeff(), top + 0.01);
     }
 }
+
+}  // namespace cloth::time_integration_test

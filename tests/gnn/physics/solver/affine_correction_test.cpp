@@ -7,7 +7,7 @@
 #include "gnn/physics/solver/quasi_newton_matrix.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-namespace cloth {
+namespace cloth::affine_correction_test {
 namespace {
 
 using test::noise;
@@ -162,4 +162,4 @@ TEST(AffineCorrection, ComesNearerToTheAnswerThanPlainConjugateGradients) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::affine_correction_test

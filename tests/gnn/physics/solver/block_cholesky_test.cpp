@@ -7,7 +7,8 @@
 #include "gnn/physics/energy/incremental_potential.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::block_cholesky_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -95,3 +96,5 @@ TEST(BlockCholesky, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(solutions[0], solutions[1]);
     EXPECT_EQ(solutions[0], solutions[2]);
 }
+
+}  // namespace cloth::block_cholesky_test

@@ -6,7 +6,8 @@
 #include "gnn/physics/stepper/guess.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::newton_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -115,3 +116,5 @@ TEST_P(NewtonTest, SettingsOutOfRangeAreRefused) {
 INSTANTIATE_TEST_SUITE_P(Fabrics, NewtonTest,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);
+
+}  // namespace cloth::newton_test

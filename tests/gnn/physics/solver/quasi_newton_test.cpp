@@ -10,7 +10,7 @@
 #include "gnn/physics/stepper/guess.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-namespace cloth {
+namespace cloth::quasi_newton_test {
 namespace {
 
 using test::noise;
@@ -406,4 +406,4 @@ TEST(QuasiNewton, NamesTheSettingThatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::quasi_newton_test

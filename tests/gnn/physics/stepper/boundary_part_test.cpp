@@ -6,7 +6,7 @@
 
 #include "data/authoring/sheet.h"
 
-namespace cloth {
+namespace cloth::boundary_part_test {
 namespace {
 
 TEST(BoundaryPart, PartsOfAMotionJoinAndEndWhereItEnds) {
@@ -55,4 +55,4 @@ TEST(BoundaryPart, PartsOfAMotionJoinAndEndWhereItEnds) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::boundary_part_test

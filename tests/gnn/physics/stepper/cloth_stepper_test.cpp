@@ -8,7 +8,7 @@
 #include "data/core/errors.h"
 #include "gnn/physics/stepper/relative_motion.h"
 
-namespace cloth {
+namespace cloth::cloth_stepper_test {
 namespace {
 
 constexpr double dt = 1.0 / 30.0;
@@ -531,4 +531,4 @@ TEST_F(Parts, AreNamed) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::cloth_stepper_test

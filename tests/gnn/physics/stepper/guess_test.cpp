@@ -6,7 +6,7 @@
 
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-namespace cloth {
+namespace cloth::guess_test {
 namespace {
 
 using test::plane_contacts;
@@ -101,4 +101,4 @@ TEST(IsValidStep, RefusesWrongSizesAndTimeSteps) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::guess_test

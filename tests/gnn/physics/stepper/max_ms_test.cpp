@@ -6,7 +6,7 @@
 #include "data/core/errors.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 
-namespace cloth {
+namespace cloth::max_ms_test {
 namespace {
 
 constexpr double frame_time = 1.0 / 30.0;
@@ -127,4 +127,4 @@ TEST_F(MaxMs, LimitsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::max_ms_test

@@ -4,7 +4,8 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::reference_step_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -234,3 +235,5 @@ TEST_P(ReferenceStep, SettingsOutOfRangeAreRefused) {
 INSTANTIATE_TEST_SUITE_P(Fabrics, ReferenceStep,
                          ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton()),
                          fabric_name);
+
+}  // namespace cloth::reference_step_test

@@ -8,7 +8,7 @@
 #include "gnn/physics/stepper/guess.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-namespace cloth {
+namespace cloth::score_test {
 namespace {
 
 using test::sheet_on_sphere;
@@ -109,4 +109,4 @@ TEST(StepReference, IsRefusedForAStateThatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace cloth
+}  // namespace cloth::score_test

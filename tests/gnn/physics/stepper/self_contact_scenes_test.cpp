@@ -12,7 +12,7 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 
-namespace cloth {
+namespace cloth::self_contact_scenes_test {
 namespace {
 
 using namespace test;
@@ -167,4 +167,4 @@ TEST(SelfContactScenes, SameBitsForAnyNumberOfThreads) {
     EXPECT_TRUE(a.x == b.x);
 }
 
-}  // namespace cloth
+}  // namespace cloth::self_contact_scenes_test

@@ -6,7 +6,7 @@
 #include "data/authoring/sheet.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::distance_constraints_test {
 
 namespace {
 
@@ -119,3 +119,5 @@ TEST(DistanceConstraints, ASpringOfNoLengthOrWithoutAFreeEndStaysFinite) {
         EXPECT_EQ(x, pair_at(length));
     }
 }
+
+}  // namespace cloth::distance_constraints_test

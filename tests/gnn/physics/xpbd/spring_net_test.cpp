@@ -5,7 +5,8 @@
 #include "gnn/physics/energy/strain.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
-using namespace cloth;
+namespace cloth::spring_net_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -155,3 +156,5 @@ TEST(BendingSprings, DoNotStiffenTheMembrane) {
     const Garment garment("sheet", make_sheet(0.5, 0.5, 300), Fabric::soft_cotton());
     EXPECT_EQ(spring_energy(bending_springs(garment, 0.3), stretched(garment, 0.2, 0.1)), 0.0);
 }
+
+}  // namespace cloth::spring_net_test

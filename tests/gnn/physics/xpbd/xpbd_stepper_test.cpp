@@ -6,7 +6,8 @@
 #include "data/core/errors.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
 
-using namespace cloth;
+namespace cloth::xpbd_stepper_test {
+
 using namespace cloth::test;
 
 namespace {
@@ -318,3 +319,5 @@ TEST(XpbdStepper, AStateFromElsewhereGoesOnAboutLikeAnOwnOne) {
         EXPECT_LE(error, 9.81 * dt * dt) << "step " << k;
     }
 }
+
+}  // namespace cloth::xpbd_stepper_test
