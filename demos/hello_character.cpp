@@ -97,7 +97,7 @@ cloth::Garment load_garment(const Options& options) {
     mesh.vertices *= options.garment_scale;
     const cloth::WeldedMesh welded = cloth::weld_mesh(mesh, options.weld);
     const cloth::Fabric fabric =
-        options.fabric == "cotton" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
+        options.fabric == "real" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
     cloth::Garment garment("garment", welded.mesh, fabric,
                            vertices_between(welded.mesh.vertices, options.pin));
     std::printf(
@@ -118,11 +118,11 @@ cloth::ClothState dress(const cloth::Garment& garment, const Skin& skin, double 
                                    "same origin and axes");
     cloth::GarmentFitSettings settings;
     settings.clearance = clearance;
-    cloth::ClothState state = cloth::ClothState::at_rest(garment);
-    state.x = cloth::fit_garment(garment.rest(), skin.rest(), skin.at(0.0), settings);
+    cloth::ClothState start = cloth::ClothState::at_rest(garment);
+    start.x = cloth::fit_garment(garment.rest(), skin.rest(), skin.at(0.0), settings);
     std::printf("fit        as modelled %.1f mm from the skin, now %.1f mm or more\n", 1e3 * away,
                 1e3 * clearance);
-    return state;
+    return start;
 }
 
 btGnnSoftBodySolver make_solver(const std::string& name) {
@@ -227,8 +227,8 @@ int read_options(int argc, char** argv, Options& options) {
     app.add_option("--clearance", options.clearance, "from skin to cloth at the start (m)");
     app.add_option("--pin", options.pin, "lowest and highest vertex that rides on the skin (m)")
         ->expected(2);
-    app.add_option("--fabric", options.fabric, "soft cotton, or cotton as measured")
-        ->check(CLI::IsMember({"soft", "cotton"}));
+    app.add_option("--fabric", options.fabric, "soft cotton, or real: cotton as measured")
+        ->check(CLI::IsMember({"soft", "real"}));
     app.add_option("--solver", options.solver, "with or without a network")
         ->check(CLI::IsMember({"small", "quasi-newton"}));
     app.add_option("--settle", options.settle, "the first pose is held for so long (s)");

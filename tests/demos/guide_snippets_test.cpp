@@ -50,10 +50,10 @@ TEST_F(GuideSnippets, Limbs) {
     world->addRigidBody(&person);
     const cloth::TriMesh shirt = cloth::load_garment_mesh("tshirt_1000");
     const auto faces = std::make_shared<const cloth::Faces>(shirt.faces);
-    const cloth::Points now = shirt.vertices, next = now.array() + 0.001;
+    const cloth::Points x0 = shirt.vertices, x1 = x0.array() + 0.001;
     // One number from 0 to 31 for each face: the part of the body that it belongs to.
     auto limbs = std::make_shared<const std::vector<std::uint8_t>>(faces->rows(), std::uint8_t{0});
-    solver.setAnimatedObstacle(&person, faces, now, next, dt, limbs);
+    solver.setAnimatedObstacle(&person, faces, x0, x1, dt, limbs);
     expect_stepped();
     solver.removeAnimatedObstacle(&person);
     world->removeRigidBody(&person);
