@@ -184,11 +184,14 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
     }
     m_own_proximity.query_rows(x, m_rows, boundary, m_near_own, end,
                                {&m_without, m_settings.reach});
+    m_passed.resize(m_own.size());
+    for (size_t i = 0; i < m_own.size(); ++i) m_passed[i] = m_own[i] | m_unjoined[i];
+    m_own_proximity.cover_rows(m_near_own, m_rows, end, m_passed, m_covers);
     m_next.clear();
-    for (const int i : m_rows) {
+    for (size_t k = 0; k < m_rows.size(); ++k) {
+        const int i = m_rows[k];
         const auto vertex = static_cast<size_t>(i);
-        const LimbSet not_joined = m_own[vertex] | m_unjoined[vertex];
-        const auto cover = m_own_proximity.cover(m_near_own, i, end, not_joined);
+        const auto& cover = m_covers[k];
         if (!cover || !(cover->depth > m_settings.least_cover)) continue;
         m_without[vertex] = ~limb_at(boundary, m_near_own.obstacle[vertex], cover->face);
         m_next.push_back(i);

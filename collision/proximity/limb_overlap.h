@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "collision/proximity/proximity.h"
@@ -90,6 +91,8 @@ class LimbOverlap {
     std::vector<LimbSet> m_ignored;   ///< |V|
     std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over
+    std::vector<LimbSet> m_passed;    ///< |V|: limbs that do not cover the vertex's own
+    std::vector<std::optional<Cover>> m_covers;  ///< over the own limbs of m_rows
     SurfaceContacts m_near, m_near_own;
     std::vector<int> m_rows, m_next;
     VectorX m_depth;      ///< |V| (m): inside limbs that are ignored

@@ -336,6 +336,18 @@ struct Proximity::Impl {
         return ordered;
     }
 
+    std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
+                               LimbSet ignored, ClosestFaceTree::Stack& stack) const {
+        constexpr double length = 0.5;  // m: thicker than any limb
+        if (!contacts.has(i)) return std::nullopt;
+        const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
+        for (const Target& target : targets)
+            if (target.index == contacts.obstacle[size_t(i)] && target.surface)
+                return target.surface->cover(points.row(i), contacts.face[size_t(i)], length, stack,
+                                             ignored);
+        return std::nullopt;
+    }
+
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
     /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
     template <class Store>
@@ -408,14 +420,21 @@ void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const 
 
 std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i,
                                       StepEnd chosen_at, LimbSet ignored) {
-    constexpr double length = 0.5;  // m: thicker than any limb
-    if (!contacts.has(i)) return std::nullopt;
-    const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
-    for (const Target& target : m_impl->targets)
-        if (target.index == contacts.obstacle[size_t(i)] && target.surface)
-            return target.surface->cover(points.row(i), contacts.face[size_t(i)], length,
-                                         m_impl->stacks[0], ignored);
-    return std::nullopt;
+    return m_impl->cover(contacts, i, chosen_at, ignored, m_impl->stacks[0]);
+}
+
+void Proximity::cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
+                           StepEnd chosen_at, const std::vector<LimbSet>& ignored,
+                           std::vector<std::optional<Cover>>& covers) {
+    const int count = static_cast<int>(rows.size());
+    covers.resize(rows.size());
+    const int threads = m_impl->threads_for(count);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 64) if (threads > 1)
+    for (int k = 0; k < count; ++k) {
+        const int i = rows[size_t(k)];
+        covers[size_t(k)] = m_impl->cover(contacts, i, chosen_at, ignored[size_t(i)],
+                                          m_impl->stacks[size_t(omp_get_thread_num())]);
+    }
 }
 
 void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepEnd end,

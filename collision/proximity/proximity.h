@@ -111,6 +111,13 @@ class Proximity {
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored = 0);
 
+    /// The same for several rows, on several threads.
+    /// @param ignored  |V|: limbs that do not count for each row
+    /// @param covers   |rows|: what lies over each of `rows`
+    void cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
+                    StepEnd chosen_at, const std::vector<LimbSet>& ignored,
+                    std::vector<std::optional<Cover>>& covers);
+
     /// Meshes that are remembered at present.
     int cached_meshes() const;
 

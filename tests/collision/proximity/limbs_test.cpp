@@ -142,27 +142,69 @@ TEST(Limbs, TheBoundarySaysWhatVerticesIgnore) {
     EXPECT_TRUE(contacts.has(0) && contacts.has(1));
 }
 
-TEST(Limbs, CoverIsWhatLiesOverAPoint) {
-    // two balls of radius 0.2 in one mesh, 0.3 apart along x
+/// Two balls of radius 0.2, limbs 0 and 1 of one mesh, 0.3 apart along x; points around the first.
+struct TwoBalls {
     const double radius = 0.2;
-    const Vec3 centre(0.3, 0, 0);
+    const Vec3 centre{0.3, 0, 0};  ///< of the second
     const TriMesh ball = icosphere(4);
-    const Eigen::Index count = ball.vertices.rows();
-    TriMesh both{Points(2 * count, 3), Faces(2 * ball.faces.rows(), 3)};
-    both.vertices.topRows(count) = radius * ball.vertices;
-    both.vertices.bottomRows(count) = (radius * ball.vertices).rowwise() + centre.transpose();
-    both.faces << ball.faces, ball.faces.array() + static_cast<int>(count);
-    std::mt19937 random(7);
-    Points x(500, 3);
-    for (Eigen::Index i = 0; i < x.rows(); ++i)
-        x.row(i) = 1.001 * radius * random_point(random, 1.0).normalized().transpose();
-    Obstacle obstacle = mesh_obstacle(both);
-    auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(both.faces.rows()), 1);
-    std::fill_n(limbs->begin(), ball.faces.rows(), 0);
-    obstacle.limbs = limbs;
+    Boundary boundary;
+    Points x{500, 3};
+
+    TwoBalls() {
+        const Eigen::Index count = ball.vertices.rows();
+        TriMesh both{Points(2 * count, 3), Faces(2 * ball.faces.rows(), 3)};
+        both.vertices.topRows(count) = radius * ball.vertices;
+        both.vertices.bottomRows(count) = (radius * ball.vertices).rowwise() + centre.transpose();
+        both.faces << ball.faces, ball.faces.array() + static_cast<int>(count);
+        std::mt19937 random(7);
+        for (Eigen::Index i = 0; i < x.rows(); ++i)
+            x.row(i) = 1.001 * radius * random_point(random, 1.0).normalized().transpose();
+        Obstacle obstacle = mesh_obstacle(both);
+        auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(both.faces.rows()), 1);
+        std::fill_n(limbs->begin(), ball.faces.rows(), 0);
+        obstacle.limbs = limbs;
+        boundary = boundary_of({obstacle});
+    }
+};
+
+TEST(Limbs, WhatCoversSeveralRowsIsWhatCoversEachForAnyNumberOfThreads) {
+    const TwoBalls balls;
+    std::vector<int> rows;
+    std::vector<LimbSet> ignored(size_t(balls.x.rows()), 0);
+    for (int i = 0; i < balls.x.rows(); ++i) {
+        if (i % 3 != 0) rows.push_back(i);
+        if (i % 5 == 0) ignored[size_t(i)] = 2;
+    }
+    for (const int threads : {1, 2, 5}) {
+        Proximity proximity({2.0, threads});
+        SurfaceContacts contacts;
+        proximity.query(balls.x, balls.boundary, contacts);
+        std::vector<std::optional<Cover>> covers;
+        proximity.cover_rows(contacts, rows, StepEnd::start, ignored, covers);
+        ASSERT_EQ(covers.size(), rows.size());
+        int found = 0;
+        for (size_t k = 0; k < rows.size(); ++k) {
+            const auto each =
+                proximity.cover(contacts, rows[k], StepEnd::start, ignored[size_t(rows[k])]);
+            ASSERT_EQ(covers[k].has_value(), each.has_value()) << "point " << rows[k];
+            if (!each) continue;
+            ++found;
+            EXPECT_EQ(covers[k]->face, each->face) << "point " << rows[k];
+            EXPECT_EQ(covers[k]->depth, each->depth) << "point " << rows[k];
+        }
+        EXPECT_GT(found, 10);
+    }
+}
+
+TEST(Limbs, CoverIsWhatLiesOverAPoint) {
+    const TwoBalls balls;
+    const double radius = balls.radius;
+    const Vec3& centre = balls.centre;
+    const TriMesh& ball = balls.ball;
+    const Points& x = balls.x;
     Proximity proximity;
     SurfaceContacts contacts;
-    proximity.query(x, boundary_of({obstacle}), contacts);
+    proximity.query(x, balls.boundary, contacts);
     int covered = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
         const auto cover = proximity.cover(contacts, i, StepEnd::start);
