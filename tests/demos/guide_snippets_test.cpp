@@ -6,6 +6,7 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
+#include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
@@ -103,6 +104,16 @@ TEST_F(GuideSnippets, Wardrobe) {
     cloth::ClothState state = cloth::load_garment_start("pants_1000");
     EXPECT_EQ(state.x.rows(), pants.vertex_count());
     EXPECT_NE(state.x, pants.rest().vertices);
+}
+
+TEST_F(GuideSnippets, TimeLimit) {
+    const auto physics = [](const cloth::Garment& garment) { return cloth::make_cloth(garment); };
+    btGnnSolverSettings settings;
+    settings.maxMs = 8.0;  // of a world step, from now on
+    btGnnSoftBodySolver limited(physics, settings);
+    EXPECT_EQ(limited.status().shortenedSteps, 0);
+    settings.maxMs = 0.0;
+    EXPECT_THROW(btGnnSoftBodySolver(physics, settings), cloth::ArgumentError);
 }
 
 TEST_F(GuideSnippets, Solvers) {
