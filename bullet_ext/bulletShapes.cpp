@@ -9,6 +9,7 @@
 #include <map>
 
 #include "data/core/mesh.h"
+#include "data/core/pose.h"
 
 namespace cloth {
 
@@ -121,8 +122,7 @@ ShapePart planePart(const btStaticPlaneShape& shape) {
     ShapePart part;
     part.shape = ObstacleShape::plane;
     const Vec3 normal = toVec3(shape.getPlaneNormal()).normalized();
-    part.frame.linear() =
-        Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), normal).toRotationMatrix();
+    part.frame.linear() = rotation_between(Vec3::UnitY(), normal).toRotationMatrix();
     part.frame.translation() = normal * static_cast<double>(shape.getPlaneConstant());
     return part;
 }

@@ -20,10 +20,15 @@ Eigen::Matrix3d frameOf(const Points& x, const Faces& faces, Eigen::Index f) {
     return frame;
 }
 
+/// A point by the two sides of a face and its normal.
+Vec3 localOf(const Points& x, const Faces& faces, Eigen::Index f, const Vec3& point) {
+    const Vec3 from_corner = point - Vec3(x.row(faces(f, 0)));
+    return frameOf(x, faces, f).colPivHouseholderQr().solve(from_corner);
+}
+
 double squaredDistance(const Points& x, const Faces& faces, Eigen::Index f, const Vec3& point) {
     // By how far barycentric coordinates are outside, and the height: enough to choose by.
-    const Vec3 local =
-        frameOf(x, faces, f).colPivHouseholderQr().solve(point - Vec3(x.row(faces(f, 0))));
+    const Vec3 local = localOf(x, faces, f, point);
     const double outside = std::max({0.0, -local[0], -local[1], local[0] + local[1] - 1.0});
     const double size = (x.row(faces(f, 1)) - x.row(faces(f, 0))).norm();
     return std::pow(outside * size, 2) + local[2] * local[2];
@@ -41,9 +46,7 @@ Vec3 restOf(const Garment& garment, const Points& x, const Vec3& point) {
             nearest = f;
         }
     }
-    const Vec3 local = frameOf(x, faces, nearest)
-                           .colPivHouseholderQr()
-                           .solve(point - Vec3(x.row(faces(nearest, 0))));
+    const Vec3 local = localOf(x, faces, nearest, point);
     const Points& rest = garment.rest().vertices;
     return Vec3(rest.row(faces(nearest, 0))) + frameOf(rest, faces, nearest) * local;
 }

@@ -53,7 +53,7 @@ double brake(std::vector<EnergyBalance::Share>& shares, double surplus) {
     for (const auto& share : shares)
         if (share.anchored) {
             const Vector6 after = motionAfter(share);
-            moving += 0.5 * after.dot(massMatrix(*share.body).ldlt().solve(after));
+            moving += 0.5 * after.dot(solve(massMatrix(*share.body), after));
         }
     if (!(surplus > 0.0) || !(moving > 0.0)) return surplus;
     const double taken = std::min(surplus, moving), kept = std::sqrt(1.0 - taken / moving);

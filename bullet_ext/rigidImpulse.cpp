@@ -26,6 +26,10 @@ Matrix6 massMatrix(const btRigidBody& body) {
     return matrix;
 }
 
+Vector6 solve(const Matrix6& mass, const Vector6& impulse) {
+    return mass.ldlt().solve(impulse);
+}
+
 Vector6 motionOf(const btRigidBody& body) {
     Vector6 velocity;
     velocity.head<3>() = toVec3(body.getLinearVelocity());
@@ -38,14 +42,14 @@ Vec3 velocityOf(const btRigidBody& body, const Vec3& place) {
 }
 
 double gainOf(const btRigidBody& body, const Vector6& impulse) {
-    return impulse.dot(motionOf(body) + 0.5 * massMatrix(body).ldlt().solve(impulse));
+    return impulse.dot(motionOf(body) + 0.5 * solve(massMatrix(body), impulse));
 }
 
 double partThatGains(const btRigidBody& body, const Vector6& impulse, double most) {
     const double whole = gainOf(body, impulse);
     if (whole <= std::max(0.0, most)) return 1.0;
     // s of the impulse gives a s + b s^2
-    const double b = 0.5 * impulse.dot(massMatrix(body).ldlt().solve(impulse)), a = whole - b;
+    const double b = 0.5 * impulse.dot(solve(massMatrix(body), impulse)), a = whole - b;
     const double root = std::sqrt(std::max(0.0, a * a + 4.0 * b * std::max(0.0, most)));
     return std::clamp((root - a) / (2.0 * b), 0.0, 1.0);
 }

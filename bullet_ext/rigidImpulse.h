@@ -18,6 +18,9 @@ Vec3 centreOf(const btRigidBody& body);
 /// kg, and kg m^2 about the centre of mass. Bodies that cannot turn count as ones that hardly can.
 Matrix6 massMatrix(const btRigidBody& body);
 
+/// The motion that an impulse (N s, N m s) gives to this mass.
+Vector6 solve(const Matrix6& mass, const Vector6& impulse);
+
 /// Velocity (m/s) and angular velocity (1/s).
 Vector6 motionOf(const btRigidBody& body);
 

@@ -343,7 +343,7 @@ void TwoWayCoupling::settle(const ClothStep& step, btRigidBody& body, Account& a
     const Vector6 moved = changeByMoving(step, body);
     if (step.anchored) account.lift = step.anchored->liftOf(body);
     // A cloth step that was cut short has left something to hand over.
-    Vector6 change = both.ldlt().solve(account.taken + account.planned - mass * moved);
+    Vector6 change = solve(both, account.taken + account.planned - mass * moved);
     if (!change.allFinite()) return;
     const Vec3 velocity = toVec3(body.getLinearVelocity()) + moved.head<3>();
     const Vec3 turning = toVec3(body.getAngularVelocity()) + moved.tail<3>();
@@ -413,7 +413,7 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
         const auto found = m_accounts.find(m_holder[static_cast<size_t>(pin)]);
         if (found == m_accounts.end()) continue;
         const btRigidBody& body = *found->first;
-        const Vector6 after = motionOf(body) + massMatrix(body).ldlt().solve(found->second.planned);
+        const Vector6 after = motionOf(body) + solve(massMatrix(body), found->second.planned);
         const Vec3 arm = Vec3(step.to.x.row(pin)) - centreOf(body);
         const Vec3 velocity = after.head<3>() + after.tail<3>().cross(arm);
         if (fitsFloats(velocity)) step.to.v.row(pin) = velocity;

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "data/core/errors.h"
+#include "data/core/pose.h"
 
 namespace cloth {
 
@@ -120,10 +121,6 @@ Vec3 body_direction(const Body& body, const std::string& from, const std::string
     return body.joints()[body.joint(to)].position - body.joints()[body.joint(from)].position;
 }
 
-Quaterniond smallest_rotation(const Vec3& from, const Vec3& to) {
-    return Quaterniond::FromTwoVectors(from, to);
-}
-
 /// The constants A, one per body joint.
 std::vector<Quaterniond> rest_alignments(const Body& body, const Figure& figure,
                                          const FigureRest& rest) {
@@ -138,7 +135,7 @@ std::vector<Quaterniond> rest_alignments(const Body& body, const Figure& figure,
                                 const std::string& tip) {
         const Quaterniond start = above.empty() ? Quaterniond::Identity() : at(above);
         at(bone) =
-            smallest_rotation(start * body_direction(body, bone, tip), rest.direction(bone, tip)) *
+            rotation_between(start * body_direction(body, bone, tip), rest.direction(bone, tip)) *
             start;
     };
     for (const std::string side : {"Left", "Right"}) {
@@ -149,7 +146,7 @@ std::vector<Quaterniond> rest_alignments(const Body& body, const Figure& figure,
         at(side + "Hand") = at(side + "FingerBase") = at(side + "ForeArm");
         // Level soles: undo the sideways spread of the figure's legs at rest.
         at(side + "Foot") = at(side + "ToeBase") =
-            smallest_rotation(-Vec3::UnitY(), rest.direction(side + "Leg", side + "Foot"));
+            rotation_between(-Vec3::UnitY(), rest.direction(side + "Leg", side + "Foot"));
     }
     return align;
 }

@@ -1,5 +1,7 @@
 #include "data/core/pose.h"
 
+#include <cmath>
+
 namespace cloth {
 
 Pose interpolate(const Pose& a, const Pose& b, double s) {
@@ -12,6 +14,23 @@ Pose interpolate(const Pose& a, const Pose& b, double s) {
     pose.linear() = from.slerp(s, to).toRotationMatrix();
     pose.translation() = (1.0 - s) * a.translation() + s * b.translation();
     return pose;
+}
+
+// Eigen's FromTwoVectors is the same, with a singular value decomposition for opposite directions
+// that takes seconds to compile wherever it is used.
+Eigen::Quaterniond rotation_between(const Vec3& from, const Vec3& to) {
+    const Vec3 a = from.normalized(), b = to.normalized();
+    const double cosine = b.dot(a);
+    Eigen::Quaterniond turn;
+    if (cosine < -1.0 + Eigen::NumTraits<double>::dummy_precision()) {
+        turn.vec() = a.unitOrthogonal();
+        turn.w() = 0.0;
+        return turn;
+    }
+    const double twice_cosine_of_half = std::sqrt((1.0 + cosine) * 2.0);
+    turn.vec() = a.cross(b) * (1.0 / twice_cosine_of_half);
+    turn.w() = twice_cosine_of_half * 0.5;
+    return turn;
 }
 
 Points transformed(const Points& points, const Pose& pose) {

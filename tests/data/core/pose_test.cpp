@@ -49,6 +49,29 @@ TEST(Interpolate, PosesOfSinglePrecisionStayRotationsFarBeyondTheEnd) {
     EXPECT_NEAR(Eigen::AngleAxisd(turn).angle(), 0.38, 1e-5);
 }
 
+TEST(RotationBetween, IsEigensBitForBit) {
+    std::mt19937 random(2);
+    const Points from = random_points(random, 200, 3.0), to = random_points(random, 200, 0.1);
+    for (Eigen::Index i = 0; i < from.rows(); ++i) {
+        const Vec3 a = from.row(i), b = to.row(i);
+        const Eigen::Quaterniond turn = rotation_between(a, b);
+        EXPECT_EQ(turn.coeffs(), Eigen::Quaterniond::FromTwoVectors(a, b).coeffs());
+        EXPECT_LT((turn * a.normalized() - b.normalized()).norm(), 1e-12);
+    }
+}
+
+TEST(RotationBetween, EqualAndOppositeDirections) {
+    std::mt19937 random(3);
+    const Points directions = random_points(random, 50, 1.0);
+    for (Eigen::Index i = 0; i < directions.rows(); ++i) {
+        const Vec3 a = directions.row(i);
+        EXPECT_LT(rotation_between(a, 2.0 * a).vec().norm(), 1e-7);
+        const Eigen::Quaterniond turn = rotation_between(a, -3.0 * a);
+        EXPECT_NEAR(turn.norm(), 1.0, 1e-12);
+        EXPECT_LT((turn * a + a).norm(), 1e-7 * a.norm());
+    }
+}
+
 TEST(Transformed, MovesEachPoint) {
     std::mt19937 random(1);
     const Points x = random_points(random, 7, 1.0);
