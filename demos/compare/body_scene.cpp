@@ -35,14 +35,14 @@ BodyScene::BodyScene(const BodySceneSettings& settings) : BodyScene(settings, ou
 }
 
 BodyScene::BodyScene(const BodySceneSettings& settings, const Outfit& outfit)
-    : ComparisonScene(outfit.garment), m_start(outfit.start) {
+    : ComparisonScene(outfit.garment, settings.rate), m_start(outfit.start) {
     if (outfit.has_layers()) m_self_contact.thickness = Outfit::thickness;
     const auto body = std::make_shared<const Body>(Body::load_default());
     AnimationSettings animation;
     animation.limbs = settings.limbs;
     m_body = std::make_unique<AnimatedBody>(body, load_motion_by_name(settings.motion), animation);
-    m_lead_in_frames = static_cast<int>(std::lround(m_body->settings().lead_in / frame_time));
-    const int available = m_body->frame_count(frame_time) - 1 - m_lead_in_frames;
+    m_lead_in_frames = static_cast<int>(std::lround(m_body->settings().lead_in / frame_time()));
+    const int available = m_body->frame_count(frame_time()) - 1 - m_lead_in_frames;
     if (available < 1)
         throw UsageError("motion " + settings.motion + ": is shorter than one frame");
     const int frames = settings.frames == 0 ? available : std::min(settings.frames, available);
@@ -52,14 +52,14 @@ BodyScene::BodyScene(const BodySceneSettings& settings, const Outfit& outfit)
 }
 
 Boundary BodyScene::boundary(double t0, double t1) const {
-    const double lead_in = m_lead_in_frames * frame_time;
+    const double lead_in = m_lead_in_frames * frame_time();
     Boundary boundary;
     boundary.obstacles.push_back(m_body->obstacle(lead_in + t0, lead_in + t1));
     return boundary;
 }
 
 Points BodyScene::skin(double time) const {
-    return m_body->vertices(m_lead_in_frames * frame_time + time);
+    return m_body->vertices(m_lead_in_frames * frame_time() + time);
 }
 
 std::vector<BodySegment> BodyScene::segments() const {

@@ -14,6 +14,7 @@ struct BodySceneSettings {
     std::string garment = "tshirt";  ///< as load_outfit() takes it; layers have self-contact
     std::string fabric = "soft";     ///< see fabric_named()
     std::string motion = "01_01";
+    int rate = 30;              ///< frames per second
     int frames = 90;            ///< of the motion; 0: all
     int reference_frames = 30;  ///< frames with references; 0: all
     /// Cloth passes through limbs that pass through others. Not where steps are judged by their
@@ -53,7 +54,7 @@ class BodyScene : public ComparisonScene {
     std::unique_ptr<AnimatedBody> m_body;
     ClothState m_start;
     SelfContactSettings m_self_contact;
-    int m_lead_in_frames = 30;
+    int m_lead_in_frames = 0;
     std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest
     Vec3 m_start_offset;         ///< from their middle to the garment's, at its start (m)
 };

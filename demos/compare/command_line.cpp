@@ -20,6 +20,12 @@ CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value
         ->type_name("N");
 }
 
+CLI::Option* add_rate(CLI::App& app, int& rate) {
+    return app.add_option("--rate", rate, "frames per second, and steps: 30 (default), 60 or 120")
+        ->check(CLI::IsMember({30, 60, 120}).description(""))
+        ->type_name("HZ");
+}
+
 CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& items,
                       const std::string& description) {
     const auto read = [name, &items](const std::string& text) {

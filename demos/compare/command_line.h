@@ -21,6 +21,9 @@ void set_up(CLI::App& app);
 CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
                               int highest, const std::string& description);
 
+/// The option --rate: frames and steps per second, of which 1/240 s is a whole part.
+CLI::Option* add_rate(CLI::App& app, int& rate);
+
 /// An option whose value is a list with commas, which must not be empty.
 /// @param items  kept if the option is not given
 CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::string>& items,

@@ -16,20 +16,20 @@ namespace cloth {
 /// the garment settles (see settle()).
 class ComparisonScene {
  public:
-    static constexpr double frame_time = 1.0 / 30.0;  ///< (s)
-
     virtual ~ComparisonScene() = default;
     ComparisonScene(const ComparisonScene&) = delete;
     ComparisonScene& operator=(const ComparisonScene&) = delete;
 
     const Garment& garment() const { return m_garment; }
+    int rate() const { return m_rate; }                          ///< frames per second
+    double frame_time() const { return 1.0 / m_rate; }           ///< (s), of a step
     int frames() const { return m_frames; }                      ///< that solvers compute
     int reference_frames() const { return m_reference_frames; }  ///< of them with references
 
     /// The outside between two times (s); negative times lie in the lead-in.
     virtual Boundary boundary(double t0, double t1) const = 0;
     Boundary frame_boundary(int frame) const {
-        return boundary(frame * frame_time, (frame + 1) * frame_time);
+        return boundary(frame * frame_time(), (frame + 1) * frame_time());
     }
 
     /// Where the garment is before the lead-in.
@@ -52,7 +52,8 @@ class ComparisonScene {
     virtual std::string loss(const Boundary&, const Points& /*x*/) const { return {}; }
 
  protected:
-    explicit ComparisonScene(Garment garment) : m_garment(std::move(garment)) {}
+    explicit ComparisonScene(Garment garment, int rate = 30)
+        : m_garment(std::move(garment)), m_rate(rate) {}
 
     /// @param reference_frames  at most `frames`
     void set_length(int frames, int reference_frames) {
@@ -62,6 +63,7 @@ class ComparisonScene {
 
  private:
     Garment m_garment;
+    int m_rate;
     int m_frames = 0;
     int m_reference_frames = 0;
 };

@@ -51,7 +51,7 @@ class FilmStudio {
           m_cloth_faces(std::make_shared<Faces>(scene.garment().rest().faces)) {}
 
     Image draw(const std::vector<FilmPanel>& panels, size_t frame) {
-        const Points skin = m_scene.skin(static_cast<double>(frame + 1) * BodyScene::frame_time);
+        const Points skin = m_scene.skin(static_cast<double>(frame + 1) * m_scene.frame_time());
         const Camera camera = m_tracker.follow(skin);
         std::vector<Image> pictures;
         for (size_t k = 0; k < panels.size(); ++k)
@@ -93,6 +93,8 @@ class FilmStudio {
 std::vector<std::string> make_film(const BodyScene& scene, const std::vector<FilmPanel>& panels,
                                    const std::string& out, const ProgressFunction& progress) {
     FilmStudio studio(scene);
+    VideoSettings settings;
+    settings.fps = scene.rate();
     std::unique_ptr<VideoWriter> video;
     std::vector<std::string> key_frames;
     const int frames = scene.frames();
@@ -100,7 +102,7 @@ std::vector<std::string> make_film(const BodyScene& scene, const std::vector<Fil
         const Image image = studio.draw(panels, static_cast<size_t>(frame));
         if (!video)
             video = std::make_unique<VideoWriter>(out + "/comparison.mp4", image.width(),
-                                                  image.height());
+                                                  image.height(), settings);
         video->add(image);
         const int next_key =
             static_cast<int>(key_frames.size()) * (frames - 1) / std::max(1, key_frame_count - 1);

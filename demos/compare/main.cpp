@@ -47,8 +47,9 @@ void prepare_work_folder(const CompareOptions& options) {
     const json settings = {
         {"commit", build_commit()},   {"garment", options.garment},
         {"motion", options.motion},   {"fabric", options.fabric},
-        {"frames", options.frames},   {"reference_frames", options.reference_frames},
-        {"threads", options.threads}, {"weights", options.weights}};
+        {"rate", options.rate},       {"frames", options.frames},
+        {"threads", options.threads}, {"reference_frames", options.reference_frames},
+        {"weights", options.weights}};
     const std::string path = work_file(options, "settings.json");
     std::error_code ignored;
     if (!std::filesystem::exists(path) || read_json(path) != settings)
@@ -119,7 +120,7 @@ json scene_json(const CompareOptions& options, const BodyScene& scene) {
             {"motion", options.motion},
             {"frames", scene.frames()},
             {"reference_frames", scene.reference_frames()},
-            {"time_step", ComparisonScene::frame_time},
+            {"time_step", scene.frame_time()},
             {"fabric", options.fabric == "real" ? "cotton, 5 kN/m" : "soft cotton, 33 N/m"}};
 }
 

@@ -27,7 +27,7 @@ SingleSteps single_steps(const ComparisonScene& scene, const References& referen
     for (size_t frame = 0; frame + 1 < references.coarse.size(); ++frame) {
         const Boundary boundary = scene.frame_boundary(static_cast<int>(frame));
         const Points x = step(frame, boundary);
-        energies.begin(references.coarse[frame], boundary, ComparisonScene::frame_time);
+        energies.begin(references.coarse[frame], boundary, scene.frame_time());
         steps.score(energies, x, references.coarse[frame + 1].x);
         done(static_cast<int>(frame) + 1);
     }
@@ -86,7 +86,7 @@ WarmStepper make_warm(const ComparisonScene& scene, const ClothState& start,
     warm.stepper = make();
     for (int k = 0; k < 2; ++k) {
         ClothState copy = start;
-        warm.stepper->step(scene.frame_boundary(0), ComparisonScene::frame_time, copy);
+        warm.stepper->step(scene.frame_boundary(0), scene.frame_time(), copy);
     }
     warm.memory_mb = peak_memory_mb() - before;
     return warm;
@@ -103,7 +103,7 @@ Measurement measure(const std::string& name, const ComparisonScene& scene, const
                  [&](int done) { progress(done, scene.frames(), name + ", rollout"); });
     const auto step = [&](size_t frame, const Boundary& boundary) {
         ClothState state = references.coarse[frame];
-        const StepReport report = warm.stepper->step(boundary, ComparisonScene::frame_time, state);
+        const StepReport report = warm.stepper->step(boundary, scene.frame_time(), state);
         if (!report.finite) state.x.setConstant(std::numeric_limits<double>::quiet_NaN());
         return state.x;
     };

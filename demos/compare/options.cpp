@@ -11,6 +11,7 @@ BodySceneSettings scene_settings(const CompareOptions& options) {
     scene.garment = options.garment;
     scene.fabric = options.fabric;
     scene.motion = options.motion;
+    scene.rate = options.rate;
     scene.frames = options.frames;
     scene.reference_frames = options.reference_frames;
     return scene;
@@ -46,8 +47,9 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
              "the end: by BDF2 instead of backward Euler;\n"
              "bf16-NAME: its products in bfloat16; @M at the end: in M ms\n"
              "a step, see Stepper::set_max_ms()");
+    add_rate(app, options.rate);
     add_whole_number(app, "--frames", options.frames, 0, 100000,
-                     "frames of 1/30 s of the motion (default 90; 0: all)");
+                     "frames of the motion (default 90; 0: all)");
     add_whole_number(app, "--reference-frames", options.reference_frames, 0, 100000,
                      "frames with references and one-step errors (default 30; 0: all)");
     app.add_option("--weights", options.weights,
@@ -79,6 +81,8 @@ std::vector<std::string> worker_arguments(const CompareOptions& options,
                                           options.out,
                                           "--solvers",
                                           join_list(options.solvers),
+                                          "--rate",
+                                          std::to_string(options.rate),
                                           "--frames",
                                           std::to_string(options.frames),
                                           "--reference-frames",

@@ -14,6 +14,7 @@ struct CompareOptions {
     std::string motion = "01_01";
     std::string fabric = "soft";  ///< soft (SNUG's cotton, 33 N/m) or real (5 kN/m)
     std::vector<std::string> solvers;
+    int rate = 30;              ///< frames and steps per second
     int frames = 90;            ///< of the motion, after the second in which the garment settles
     int reference_frames = 30;  ///< frames that the references are computed for; 0: all
     int threads = 0;            ///< 0: all cores

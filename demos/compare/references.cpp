@@ -4,6 +4,8 @@
 
 namespace cloth {
 
+static constexpr int fine_rate = 240;  // steps per second
+
 static ClothStepperSettings many_iterations(int iterations, double tolerance) {
     return ClothStepperSettings::plain(IterationLimits::until(tolerance, iterations));
 }
@@ -11,7 +13,7 @@ static ClothStepperSettings many_iterations(int iterations, double tolerance) {
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress) {
     ClothStepper stepper(scene.garment(), many_iterations(60, 1e-3));
     ClothState state = scene.start();
-    const double dt = ComparisonScene::frame_time;
+    const double dt = scene.frame_time();
     const int steps = scene.lead_in_frames();
     for (int k = 0; k < steps; ++k) {
         stepper.step(scene.boundary((k - steps) * dt, (k + 1 - steps) * dt), dt, state);
@@ -25,7 +27,7 @@ ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress
 static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int substeps,
                          Trajectory trajectory, int frames, const std::string& what,
                          const ProgressFunction& progress) {
-    const double dt = ComparisonScene::frame_time / substeps;
+    const double dt = scene.frame_time() / substeps;
     for (int frame = static_cast<int>(trajectory.size()) - 1; frame < frames; ++frame) {
         ClothState state = trajectory.back();
         for (int step = frame * substeps; step < (frame + 1) * substeps; ++step)
@@ -39,14 +41,17 @@ static Trajectory extend(const ComparisonScene& scene, Stepper& stepper, int sub
 Trajectory coarse_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                             const ProgressFunction& progress) {
     ClothStepper stepper(scene.garment(), ClothStepperSettings::reference());
-    return extend(scene, stepper, 1, std::move(begun), frames, "reference, 1/30 s", progress);
+    return extend(scene, stepper, 1, std::move(begun), frames,
+                  "reference, 1/" + std::to_string(scene.rate()) + " s", progress);
 }
 
 Trajectory fine_reference(const ComparisonScene& scene, Trajectory begun, int frames,
                           const ProgressFunction& progress) {
     // At 1/240 s inertia rules the potential and the quasi-Newton matrix is nearly its Hessian.
     ClothStepper stepper(scene.garment(), many_iterations(100, 1e-4));
-    return extend(scene, stepper, 8, std::move(begun), frames, "reference, 1/240 s", progress);
+    const int substeps = fine_rate / scene.rate();
+    return extend(scene, stepper, substeps, std::move(begun), frames, "reference, 1/240 s",
+                  progress);
 }
 
 }  // namespace cloth

@@ -23,7 +23,7 @@ bool RolloutMeter::advance(const Boundary& boundary) {
     const int index = frame();
     m_before = m_state;
     const auto start = std::chrono::steady_clock::now();
-    const StepReport report = m_stepper.step(boundary, ComparisonScene::frame_time, m_state);
+    const StepReport report = m_stepper.step(boundary, m_scene.frame_time(), m_state);
     const auto time = std::chrono::steady_clock::now() - start;
     record_times(report, std::chrono::duration<double, std::milli>(time).count());
     if (!report.finite || !m_state.x.allFinite()) {
@@ -37,7 +37,7 @@ bool RolloutMeter::advance(const Boundary& boundary) {
 }
 
 void RolloutMeter::score_last_step(StepEnergies& energies, const Boundary& boundary) {
-    energies.begin(m_before, boundary, ComparisonScene::frame_time);
+    energies.begin(m_before, boundary, m_scene.frame_time());
     const double minimum = energies.minimum_from(m_state.x);
     const double energy = energies.potential().value(m_state.x);
     m_rollout.gap.push_back(energies.gap(energy, minimum));

@@ -1,6 +1,7 @@
 #include "demos/compare/solver_factory.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -38,7 +39,7 @@ int iterations_of(const std::string& name, const std::string& prefix, int lowest
 
 /// Bullet with K iterations and S sub-steps of a frame. The margin is the one that was found to
 /// hold a T-shirt: 10 mm with the shipped sub-steps, 4 mm with the fine ones.
-BulletClothSettings bullet_settings(const std::string& name) {
+BulletClothSettings bullet_settings(const std::string& name, const ComparisonScene& scene) {
     if (name == "bullet") return BulletClothSettings::shipped();
     if (name == "bullet-fine") return BulletClothSettings::fine();
     const size_t cross = name.find('x');
@@ -51,7 +52,7 @@ BulletClothSettings bullet_settings(const std::string& name) {
         substeps < 8 ? BulletClothSettings::shipped() : BulletClothSettings::fine();
     settings.name = name;
     settings.cloth.iterations = iterations;
-    settings.substep_dt = ComparisonScene::frame_time / substeps;
+    settings.substep_dt = scene.frame_time() / substeps;
     return settings;
 }
 
@@ -201,9 +202,15 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
         return stepper;
     }
     if (starts_with(name, "bullet"))
-        return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name),
+        return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name, scene),
                                                     scene.segments());
-    return make_own_solver(name, scene, settings);
+    auto stepper = make_own_solver(name, scene, settings);
+    // Without its network it would be another solver under this name.
+    if (stepper->fixed_dt() > 0.0 && std::abs(stepper->fixed_dt() - scene.frame_time()) > 1e-6)
+        throw UsageError("solver " + name + ": its network takes steps of 1/" +
+                         std::to_string(std::lround(1.0 / stepper->fixed_dt())) +
+                         " s; leave it out, or take that --rate");
+    return stepper;
 }
 
 }  // namespace cloth

@@ -38,6 +38,20 @@ std::string benchmark_command(const std::string& program) {
            " --benchmark_out_format=json --benchmark_out=OUT/report.json";
 }
 
+/// Steps of 1/60 s, one second of them.
+DataSet real_time(const std::string& garment) {
+    const std::string name = "real_time_" + garment;
+    return {name,
+            figures + name + ".json",
+            "build/release/demos/speed_error --garment " + garment +
+                " --rate 60 --frames 60 --relative-to xpbd-20 --solvers"
+                " bullet-fine,xpbd-20,quasi-newton-3,quasi-newton-10,quasi-newton,quasi-newton@16,"
+                "quasi-newton@8 --out OUT",
+            "speed_error.json",
+            {},
+            {}};
+}
+
 DataSet motions(const std::string& name, const std::string& options) {
     return {name,
             figures + name + ".json",
@@ -70,10 +84,13 @@ std::vector<DataSet> data_sets() {
          {},
          {{"tshirt_soft_fine_rmse.svg", figures + "speed_error_tshirt_soft_fine_rmse.svg"},
           {"tshirt_soft_gap.svg", figures + "speed_error_tshirt_soft_gap.svg"}}},
+        real_time("tshirt"),
+        real_time("tshirt_1000"),
         {"hard_cases",
          figures + "hard_cases.json",
          "build/release/demos/hard_cases"
-         " --steppers quasi-newton,quasi-newton-bdf2,small,fast,fast+0 --no-pictures --out OUT",
+         " --steppers quasi-newton,quasi-newton-bdf2,small,small+3,fast,fast+0,xpbd-40 "
+         "--no-pictures --out OUT",
          "hard_cases.json",
          {},
          {}},

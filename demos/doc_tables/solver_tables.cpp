@@ -132,6 +132,30 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable real_time_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver"};
+    for (const DataFile& file : files) {
+        const std::string vertices = decimals(file.rows("scenes").at(0).number("/vertices"), 0);
+        table.heading.push_back(vertices + " vertices: ms per step, median / 95 % / longest");
+        table.heading.push_back("mm");
+    }
+    for (const DataRow& first : files.at(0).rows("rows")) {
+        const std::string solver = first.text("/solver");
+        std::vector<std::string> cells = {solver};
+        for (const DataFile& file : files) {
+            const DataRow row = file.row("rows", {{"solver", solver}});
+            cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
+                            significant(row.number("/ms_p95"), 2) + " / " +
+                            significant(row.number("/ms_longest"), 2));
+            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
+                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
+        }
+        table.rows.push_back(cells);
+    }
+    return table;
+}
+
 MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"solver", "one step: gap", "rollout: RMSE (mm)"};

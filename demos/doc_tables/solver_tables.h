@@ -8,6 +8,8 @@ namespace cloth {
 MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
 MarkdownTable speed_error_table(const std::vector<DataFile>& files);
 MarkdownTable which_solver_table(const std::vector<DataFile>& files);
+/// Steps of 1/60 s, a garment in each file, the same solvers in each.
+MarkdownTable real_time_table(const std::vector<DataFile>& files);
 MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files);
 
 }  // namespace cloth

@@ -31,7 +31,7 @@ struct SwingSettings {
     Fabric fabric = Fabric::soft_cotton();
     double gravity = 9.81;              ///< (m/s^2)
     Pose place = placed(Vec3::Zero());  ///< the scene with its gravity, moved and turned
-    double dt = ComparisonScene::frame_time;
+    double dt = 1.0 / 30.0;
     double ball_rise = 0.0;  ///< during the first second (m)
 };
 HardSceneParts swing(const SwingSettings& settings);

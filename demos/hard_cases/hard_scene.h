@@ -14,7 +14,7 @@ struct HardSceneParts {
     Garment garment;
     ClothState start;
     std::function<Boundary(double t0, double t1)> outside;  ///< between two times (s)
-    double dt = ComparisonScene::frame_time;                ///< time step (s)
+    double dt = 1.0 / 30.0;                                 ///< time step (s)
     std::vector<BodySegment> segments = {};                 ///< of an animated body, for Bullet
     /// Why a garment at x does not belong to the scene any more, such as "fell through"; optional.
     std::function<std::string(const Boundary&, const Points& x)> loss = nullptr;

@@ -39,7 +39,7 @@ HardSceneParts parts_of(const std::shared_ptr<const BodyScene>& scene,
 }
 
 double lead_in(const BodyScene& scene) {
-    return scene.lead_in_frames() * ComparisonScene::frame_time;
+    return scene.lead_in_frames() * scene.frame_time();
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ HardCase motion_case(const std::string& motion, const std::string& garment, bool
 HardSceneParts soak_motion() {
     const std::shared_ptr<const BodyScene> scene = whole_motion("01_01", "tshirt_1000");
     const double before = lead_in(*scene);
-    const double length = scene->frames() * ComparisonScene::frame_time;
+    const double length = scene->frames() * scene->frame_time();
     // it slows down to turn round, as a pendulum does
     return parts_of(scene, [=](double t) {
         if (t < before) return t - before;

@@ -24,9 +24,10 @@ std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& st
     return rollouts;
 }
 
-Points single_step(const ClothState& before, const Boundary& boundary, Stepper& stepper) {
+Points single_step(const ClothState& before, const Boundary& boundary, double dt,
+                   Stepper& stepper) {
     ClothState state = before;
-    const StepReport report = stepper.step(boundary, ComparisonScene::frame_time, state);
+    const StepReport report = stepper.step(boundary, dt, state);
     if (!report.finite) state.x.setConstant(std::numeric_limits<double>::quiet_NaN());
     return state.x;
 }
@@ -41,10 +42,12 @@ std::vector<SingleSteps> make_single_steps(const ComparisonScene& scene,
         const Boundary boundary = scene.frame_boundary(frame);
         const ClothState& before = references.coarse[static_cast<size_t>(frame)];
         const Points& converged = references.coarse[static_cast<size_t>(frame) + 1].x;
-        energies.begin(before, boundary, ComparisonScene::frame_time);
+        energies.begin(before, boundary, scene.frame_time());
         for (size_t k = 0; k < contestants.size(); ++k)
-            steps[k].score(energies, single_step(before, boundary, *contestants[k].warm.stepper),
-                           converged);
+            steps[k].score(
+                energies,
+                single_step(before, boundary, scene.frame_time(), *contestants[k].warm.stepper),
+                converged);
         progress(frame + 1, scene.reference_frames(), "single steps in turn");
     }
     return steps;

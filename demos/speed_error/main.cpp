@@ -80,7 +80,7 @@ void speed_error(const SpeedErrorOptions& options) {
     for (const std::string& scene : options.scenes)
         for (const std::string& fabric : options.fabrics) {
             const SceneReport report = measure_scene(
-                {scene, fabric, options.frames, options.vertices}, contest,
+                {scene, fabric, options.frames, options.vertices, options.rate}, contest,
                 [&](int done, int all, const std::string& what) { line.update(done, all, what); });
             head["scenes"].push_back(report.description);
             rows.insert(rows.end(), report.rows.begin(), report.rows.end());

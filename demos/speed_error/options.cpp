@@ -29,14 +29,15 @@ const char* const explanations =
     "rollout by one frame, then the next solver does, so that all meet the same\n"
     "machine. Then each makes one step from every state of the reference, in turns.\n"
     "\n"
-    "  ms_median, ms_p95    time of a frame of the rollout\n"
+    "  ms_median, ms_p95,   time of a frame of the rollout\n"
+    "  ms_longest\n"
     "  ms_ratio             median over the frames of the time divided by that of\n"
     "                       --relative-to in the same frame\n"
     "  gap_median           energy above the minimum after one step; 1: no better than\n"
     "                       the guess that all start from\n"
     "  progress_median      the same; 1: no better than not moving\n"
     "  rmse_mm              distance to the reference after one step\n"
-    "  rollout_rmse_mm      to the reference of 1/30 s, over the whole rollout\n"
+    "  rollout_rmse_mm      to the reference with the same steps, over the whole rollout\n"
     "  fine_rmse_mm         to the reference of 1/240 s, over the whole rollout\n"
     "  peak_memory_mb       highest resident memory while the solver was made and stepped\n"
     "                       twice, less that before; freed memory was given back first.\n"
@@ -60,8 +61,9 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
     add_choice(app, "--fabric", options.fabrics, {"soft", "real"}, "both",
                "soft (cotton of 33 N/m; default), real (as measured,\n"
                "5 kN/m), or both");
+    add_rate(app, options.rate);
     add_whole_number(app, "--frames", options.frames, 0, 100000,
-                     "frames of 1/30 s (default 30; 0: as long as the scene lasts)");
+                     "frames (default 30; 0: as long as the scene lasts)");
     add_whole_number(app, "--vertices", options.vertices, 100, 20000,
                      "of the sheets, 100 to 20000 (default 4000)");
     add_list(app, "--solvers", options.solvers,

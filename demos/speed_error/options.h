@@ -8,13 +8,14 @@ namespace cloth {
 struct SpeedErrorOptions {
     std::vector<std::string> scenes = {"tshirt"};  ///< of scene_names(), or garments
     std::vector<std::string> fabrics = {"soft"};   ///< soft, real
-    int frames = 30;                               ///< of 1/30 s
-    int vertices = 4000;                           ///< of the sheets
-    int threads = 0;                               ///< 0: all cores that this process may use
-    std::vector<std::string> solvers;              ///< empty: default_solvers()
-    std::string relative_to;  ///< times are also given relative to this solver's; empty:
-                              ///< quasi-newton-3, if it takes part
-    std::string weights;      ///< folder; empty: the committed weights
+    int rate = 30;                                 ///< frames and steps per second
+    int frames = 30;
+    int vertices = 4000;               ///< of the sheets
+    int threads = 0;                   ///< 0: all cores that this process may use
+    std::vector<std::string> solvers;  ///< empty: default_solvers()
+    std::string relative_to;           ///< times are also given relative to this solver's; empty:
+                                       ///< quasi-newton-3, if it takes part
+    std::string weights;               ///< folder; empty: the committed weights
     std::string out = "out/speed_error";
 };
 

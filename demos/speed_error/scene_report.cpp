@@ -26,7 +26,7 @@ ordered_json describe(const SceneSettings& settings, const ComparisonScene& scen
     json["obstacles"] = boundary.obstacles.size();
     json["obstacle_faces"] = obstacle_faces;
     json["frames"] = scene.frames();
-    json["time_step"] = ComparisonScene::frame_time;
+    json["time_step"] = scene.frame_time();
     return json;
 }
 
@@ -56,7 +56,8 @@ std::vector<double> times_of(const std::string& name, const std::vector<std::str
 
 SceneReport measure_scene(const SceneSettings& scene_settings, const ContestSettings& settings,
                           const ProgressFunction& progress) {
-    const std::string name = scene_settings.name + "_" + scene_settings.fabric;
+    const std::string name = scene_settings.name + "_" + scene_settings.fabric + "_" +
+                             std::to_string(scene_settings.rate) + "Hz";
     const auto tell = [&](int done, int all, const std::string& what) {
         progress(done, all, scene_settings.name + ", " + scene_settings.fabric + ": " + what);
     };

@@ -11,13 +11,14 @@ namespace cloth {
 namespace {
 
 constexpr double sheet_size = 1.0;  // edge of the sheets (m)
-constexpr int sheet_frames = 90;    // what 0 frames mean without a motion that ends
+constexpr int sheet_seconds = 3;    // what 0 frames mean without a motion that ends
 
 /// A sheet held by a clip at each of two corners, level at first: it swings down.
 class SheetScene : public ComparisonScene {
  public:
-    explicit SheetScene(const SceneSettings& settings) : ComparisonScene(make_garment(settings)) {
-        const int frames = settings.frames == 0 ? sheet_frames : settings.frames;
+    explicit SheetScene(const SceneSettings& settings)
+        : ComparisonScene(make_garment(settings), settings.rate) {
+        const int frames = settings.frames == 0 ? sheet_seconds * rate() : settings.frames;
         set_length(frames, frames);
         const std::vector<int>& pins = garment().pins();
         m_held.resize(static_cast<Eigen::Index>(pins.size()), 3);
@@ -56,8 +57,9 @@ class SphereScene : public ComparisonScene {
  public:
     explicit SphereScene(const SceneSettings& settings)
         : ComparisonScene({"sheet", make_sheet(sheet_size, sheet_size, settings.vertices),
-                           fabric_named(settings.fabric)}) {
-        const int frames = settings.frames == 0 ? sheet_frames : settings.frames;
+                           fabric_named(settings.fabric)},
+                          settings.rate) {
+        const int frames = settings.frames == 0 ? sheet_seconds * rate() : settings.frames;
         set_length(frames, frames);
     }
 
@@ -102,6 +104,7 @@ std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings) {
     BodySceneSettings body;
     body.garment = settings.name;
     body.fabric = settings.fabric;
+    body.rate = settings.rate;
     body.frames = settings.frames;
     body.reference_frames = settings.frames;
     return std::make_unique<BodyScene>(body);

@@ -13,6 +13,7 @@ struct SceneSettings {
     std::string fabric = "soft";  ///< soft, real
     int frames = 30;              ///< all with references; 0: as long as the scene lasts
     int vertices = 4000;          ///< of the sheets
+    int rate = 30;                ///< frames per second
 };
 
 /// Where the garment of the scene on a body is not another one.

@@ -57,6 +57,7 @@ SolverRow make_row(const std::string& solver, const ContestResult& result,
     row.frames = static_cast<int>(rollout.ms.size());
     row.ms_median = median(rollout.ms);
     row.ms_p95 = quantile(rollout.ms, 0.95);
+    row.ms_longest = quantile(rollout.ms, 1.0);
     row.ms_ratio = median_ratio(rollout.ms, relative_to);
     row.gap_median = median(result.single.gap);
     row.progress_median = median(result.single.progress);
@@ -86,6 +87,7 @@ ordered_json to_json(const SolverRow& row) {
     json["frames"] = row.frames;
     json["ms_median"] = rounded(row.ms_median);
     json["ms_p95"] = rounded(row.ms_p95);
+    json["ms_longest"] = rounded(row.ms_longest);
     json["ms_ratio"] = rounded(row.ms_ratio);
     json["gap_median"] = rounded(row.gap_median);
     json["progress_median"] = rounded(row.progress_median);

@@ -19,7 +19,7 @@ struct SolverRow {
     std::optional<NetworkFacts> network;
     int threads = 1;
     int frames = 0;  ///< that the rollout lasted
-    double ms_median = none, ms_p95 = none;
+    double ms_median = none, ms_p95 = none, ms_longest = none;
     double ms_ratio = none;  ///< median over the frames of the time over that of another solver
     double gap_median = none, progress_median = none;
     double rmse_mm = none;                               ///< single steps

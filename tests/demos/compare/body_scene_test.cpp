@@ -21,13 +21,13 @@ BodySceneSettings small_shirt() {
 
 TEST(BodySceneLoss, AShirtInPlaceBelongsToTheScene) {
     const BodyScene scene(small_shirt());
-    const double start = -scene.lead_in_frames() * ComparisonScene::frame_time;
+    const double start = -scene.lead_in_frames() * scene.frame_time();
     EXPECT_EQ(scene.loss(scene.boundary(start, start), scene.garment().rest().vertices), "");
 }
 
 TEST(BodySceneLoss, AShirtThatFellToTheFeetOrStayedBehindDoesNot) {
     const BodyScene scene(small_shirt());
-    const double start = -scene.lead_in_frames() * ComparisonScene::frame_time;
+    const double start = -scene.lead_in_frames() * scene.frame_time();
     Points x = scene.garment().rest().vertices;
     x.col(1).array() -= 0.5;
     EXPECT_EQ(scene.loss(scene.boundary(start, start), x), "slid off the body");
@@ -44,8 +44,21 @@ TEST(BodyScene, GarmentsWithAWaistbandStartAsTheyAreWorn) {
     EXPECT_EQ(start.x, load_garment_start("pants_1000").x);
     EXPECT_NE(start.x, scene.garment().rest().vertices);
     EXPECT_EQ(start.v.norm(), 0.0);
-    const double time = -scene.lead_in_frames() * ComparisonScene::frame_time;
+    const double time = -scene.lead_in_frames() * scene.frame_time();
     EXPECT_EQ(scene.loss(scene.boundary(time, time), start.x), "");
+}
+
+TEST(BodyScene, AHigherRateIsTheSameMotionInSmallerSteps) {
+    BodySceneSettings settings = small_shirt();
+    const BodyScene slow(settings);
+    settings.rate = 60;
+    const BodyScene fast(settings);
+    EXPECT_EQ(fast.frame_time(), 1.0 / 60.0);
+    EXPECT_EQ(fast.lead_in_frames(), 2 * slow.lead_in_frames());
+    const Boundary whole = slow.frame_boundary(7), last_half = fast.frame_boundary(15);
+    const Points &end = whole.obstacles[0].x1, &same = last_half.obstacles[0].x1;
+    EXPECT_LT((end - same).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_GT((whole.obstacles[0].x0 - last_half.obstacles[0].x0).cwiseAbs().maxCoeff(), 1e-4);
 }
 
 TEST(BodyScene, LayersOfAnOutfitKeepOffEachOther) {
@@ -61,10 +74,9 @@ TEST(BodyScene, LayersOfAnOutfitKeepOffEachOther) {
     const int first = -scene.lead_in_frames();
     for (int frame = first; frame < first + 12; ++frame) {
         EXPECT_EQ(tangles.find(state.x).size(), 0u) << "frame " << frame;
-        const StepReport report =
-            stepper->step(scene.boundary(frame * ComparisonScene::frame_time,
-                                         (frame + 1) * ComparisonScene::frame_time),
-                          ComparisonScene::frame_time, state);
+        const StepReport report = stepper->step(
+            scene.boundary(frame * scene.frame_time(), (frame + 1) * scene.frame_time()),
+            scene.frame_time(), state);
         EXPECT_TRUE(report.finite);
         EXPECT_LT(report.max_penetration, 1e-3);
     }
@@ -87,7 +99,7 @@ TEST(BodyScene, AWrongGarmentIsAnsweredWithTheRightOnes) {
 // Crouching moves the mean of the whole body by more than that of the torso.
 TEST(BodySceneLoss, LegsThatMoveAloneDoNotCount) {
     const BodyScene scene(small_shirt());
-    const double start = -scene.lead_in_frames() * ComparisonScene::frame_time;
+    const double start = -scene.lead_in_frames() * scene.frame_time();
     Boundary boundary = scene.boundary(start, start);
     Points& skin = boundary.obstacles[0].x1;
     const double hem = scene.garment().rest().vertices.col(1).minCoeff();

@@ -11,8 +11,9 @@ namespace {
 
 class FreeSheet : public ComparisonScene {
  public:
-    FreeSheet()
-        : ComparisonScene(Garment("sheet", cloth::test::sheet(4, 0.1), Fabric::soft_cotton())) {}
+    explicit FreeSheet(int rate = 30)
+        : ComparisonScene(Garment("sheet", cloth::test::sheet(4, 0.1), Fabric::soft_cotton()),
+                          rate) {}
 
     Boundary boundary(double, double) const override {
         Boundary boundary;
@@ -21,9 +22,9 @@ class FreeSheet : public ComparisonScene {
     }
 };
 
-std::string refusal(const std::string& name) {
+std::string refusal(const std::string& name, int rate = 30) {
     try {
-        make_solver(name, FreeSheet(), {});
+        make_solver(name, FreeSheet(rate), {});
     } catch (const UsageError& error) {
         return error.what();
     }
@@ -45,6 +46,16 @@ TEST(SolverFactory, NetworksAreCalledWhatTheUserChose) {
     for (const std::string name : {"small", "small+3", "fast", "fast+0"})
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
     EXPECT_EQ(make_solver("bf16-small", scene, {})->name(), "small");
+}
+
+TEST(SolverFactory, NetworksKeepToTheirTimeStep) {
+    for (const std::string name : {"small", "small+3", "small+3@20"}) {
+        const std::string text = refusal(name, 60);
+        for (const char* word : {"small", "1/30 s", "--rate"})
+            EXPECT_NE(text.find(word), std::string::npos) << text;
+    }
+    EXPECT_EQ(refusal("quasi-newton", 60), "");
+    EXPECT_EQ(refusal("xpbd-20", 60), "");
 }
 
 TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {

@@ -35,7 +35,7 @@ TEST_P(Waistband, StaysOnTheWaistWhileTheBodyJumps) {
     const BodyScene scene(settings);
     const Points worn = scene.start().x;
     const std::vector<int> edge = upper_edge(worn);
-    const double lead_in = scene.lead_in_frames() * ComparisonScene::frame_time;
+    const double lead_in = scene.lead_in_frames() * scene.frame_time();
     const SkinBinding waist({scene.skin(-lead_in), *scene.body().faces()}, worn(edge, Eigen::all));
     ClothState state = settle(scene, [](int, int, const std::string&) {});
     ClothStepper stepper(scene.garment(),
@@ -43,10 +43,9 @@ TEST_P(Waistband, StaysOnTheWaistWhileTheBodyJumps) {
     double farthest = 0.0;
     for (int frame = 0; frame < scene.frames(); ++frame) {
         const Boundary boundary = scene.frame_boundary(frame);
-        stepper.step(boundary, ComparisonScene::frame_time, state);
+        stepper.step(boundary, scene.frame_time(), state);
         ASSERT_EQ(scene.loss(boundary, state.x), "") << "frame " << frame;
-        const Points places =
-            waist.positions(scene.skin((frame + 1) * ComparisonScene::frame_time));
+        const Points places = waist.positions(scene.skin((frame + 1) * scene.frame_time()));
         const Points x = state.x(edge, Eigen::all);
         farthest = std::max(farthest, (x - places).rowwise().norm().mean());
     }

@@ -45,6 +45,7 @@ TEST(SpeedErrorOptions, AllAndBothAreEveryChoice) {
 TEST(SpeedErrorOptions, WhatCannotBeIsNamedWithItsChoices) {
     expect_words(message({"--scene", "moon"}), {"--scene", "moon", "sheet", "tshirt", "sphere"});
     expect_words(message({"--fabric", "silk"}), {"--fabric", "silk", "soft", "real", "both"});
+    expect_words(message({"--rate", "50"}), {"--rate", "50", "30", "60", "120"});
     expect_words(message({"--frames", "-1"}), {"--frames", "-1", "0"});
     expect_words(message({"--frames", "ten"}), {"--frames", "ten"});
     expect_words(message({"--vertices", "99"}), {"--vertices", "99", "100", "20000"});
