@@ -19,12 +19,21 @@ bool take_bdf2(std::string& name) {
     return true;
 }
 
-/// "K" or "KxS"; Bullet as shipped has two sub-steps per frame.
+/// Takes "@M" off the end; empty: it is not there.
+std::string take_limit(std::string& name) {
+    const size_t at = name.rfind('@');
+    if (at == std::string::npos) return "";
+    const std::string limit = name.substr(at + 1);
+    name.resize(at);
+    return limit;
+}
+
+/// "K", in steps as shipped, or "KxS".
 SolverFamily bullet_family(const std::string& setting) {
     const size_t cross = setting.find('x');
-    const int substeps = cross == std::string::npos ? 2 : std::stoi(setting.substr(cross + 1));
-    return {Kind::bullet, "Bullet, 1/" + std::to_string(30 * substeps) + " s",
-            setting.substr(0, cross), "iterations"};
+    const std::string steps =
+        cross == std::string::npos ? "1/60 s" : setting.substr(cross + 1) + " sub-steps";
+    return {Kind::bullet, "Bullet, " + steps, setting.substr(0, cross), "iterations"};
 }
 
 SolverFamily network_family(const std::string& name) {
@@ -37,13 +46,19 @@ SolverFamily network_family(const std::string& name) {
 }  // namespace
 
 SolverFamily solver_family(std::string solver) {
+    if (const std::string limit = take_limit(solver); !limit.empty()) {
+        SolverFamily family = solver_family(solver);
+        family.name += ", limit of time";
+        family.setting += "@" + limit;
+        return family;
+    }
     if (take_bdf2(solver)) {
         SolverFamily family = solver_family(solver);
         family.name += ", BDF2";
         return family;
     }
-    if (solver == "bullet") return bullet_family("10x2");
-    if (solver == "bullet-fine") return bullet_family("5x8");
+    if (solver == "bullet") return bullet_family("10");
+    if (solver == "bullet-fine") return {Kind::bullet, "Bullet, 1/240 s", "5", "iterations"};
     if (const auto setting = after(solver, "bullet-")) return bullet_family(*setting);
     if (const auto setting = after(solver, "xpbd-"))
         return {Kind::xpbd, "XPBD", *setting, "sub-steps"};
@@ -58,6 +73,7 @@ SolverFamily solver_family(std::string solver) {
 }
 
 std::optional<NetworkFacts> network_facts(std::string solver, const SolverSettings& settings) {
+    take_limit(solver);
     take_bdf2(solver);
     const SolverFamily family = solver_family(solver);
     if (family.kind != Kind::network) return std::nullopt;

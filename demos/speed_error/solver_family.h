@@ -11,7 +11,7 @@ namespace cloth {
 struct SolverFamily {
     enum class Kind { bullet, xpbd, quasi_newton, newton, network };
     Kind kind;
-    std::string name;     ///< for a legend: "quasi-Newton", "Bullet, 1/60 s", "fast, LibTorch"
+    std::string name;     ///< for a legend: "quasi-Newton", "Bullet, 8 sub-steps", "fast, LibTorch"
     std::string setting;  ///< for a point: "3", "+10", "shipped"
     std::string counts;   ///< what the setting is a number of: "iterations"
 };

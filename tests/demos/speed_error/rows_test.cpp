@@ -76,8 +76,11 @@ TEST(SolverRow, TheTableHasEveryFieldOfTheJson) {
 }
 
 TEST(SolverFamily, NamesSayFamilyAndSetting) {
-    EXPECT_EQ(solver_family("bullet").name, solver_family("bullet-5x2").name);
+    EXPECT_EQ(solver_family("bullet").name, solver_family("bullet-5").name);
     EXPECT_EQ(solver_family("bullet-fine").name, "Bullet, 1/240 s");
+    EXPECT_EQ(solver_family("bullet-5x8").name, "Bullet, 8 sub-steps");
+    EXPECT_EQ(solver_family("quasi-newton-bdf2@8").name, "quasi-Newton, BDF2, limit of time");
+    EXPECT_EQ(solver_family("quasi-newton@8").setting, "shipped@8");
     EXPECT_EQ(solver_family("bullet-5x1").setting, "5");
     EXPECT_EQ(solver_family("reference").name, solver_family("newton-3").name);
     EXPECT_EQ(solver_family("quasi-newton-30").setting, "30");
@@ -99,8 +102,9 @@ TEST(SpeedErrorPlots, HaveEveryFamilyEverySettingAndEveryFailure) {
     const std::vector<NamedPlot> plots = speed_error_plots(rows);
     ASSERT_EQ(plots.size(), 4u);
     for (const NamedPlot& plot : plots) {
-        for (const char* family : {"Bullet, 1/30 s", "Bullet, 1/240 s", "XPBD", "quasi-Newton",
-                                   "Newton", "fast:", "fast, LibTorch", "rollout failed"})
+        for (const char* family :
+             {"Bullet, 1 sub-steps", "Bullet, 8 sub-steps", "XPBD", "quasi-Newton", "Newton",
+              "fast:", "fast, LibTorch", "rollout failed"})
             EXPECT_NE(plot.svg.find(family), std::string::npos) << plot.name << ": " << family;
         EXPECT_EQ(count_of(plot.svg, "<circle"), rows.size() - 1) << plot.name;
         EXPECT_EQ(count_of(plot.svg, "class=\"cross\""), 2u) << "the failure and the legend";
