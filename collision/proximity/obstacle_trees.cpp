@@ -113,6 +113,12 @@ struct ObstacleTrees::KnownMeshes : Meshes {
         return mesh->motions.add(step, std::move(motion));
     }
 
+    void prepare_motion(const Obstacle& obstacle) {
+        KnownMesh* mesh = find(obstacle);
+        if (mesh && mesh->motions.is_empty() && obstacle.x0.allFinite())
+            mesh->motions.add(step, build_motion(obstacle));
+    }
+
     ObstacleTreesSettings settings;
     long step = 0;
     Counts counts;
@@ -135,6 +141,12 @@ std::shared_ptr<const MotionTree> ObstacleTrees::motion(const Obstacle& obstacle
     const std::lock_guard<std::mutex> lock(m_mutex);
     const std::shared_ptr<const FittedMotion> motion = known().motion(obstacle);
     return motion ? std::shared_ptr<const MotionTree>(motion, &motion->tree) : nullptr;
+}
+
+void ObstacleTrees::prepare_motion(const Obstacle& obstacle) {
+    if (!is_mesh(obstacle)) return;
+    const std::lock_guard<std::mutex> lock(m_mutex);
+    known().prepare_motion(obstacle);
 }
 
 ObstacleTrees::Counts ObstacleTrees::counts() const {

@@ -69,6 +69,10 @@ class ObstacleTrees {
     /// finite.
     std::shared_ptr<const MotionTree> motion(const Obstacle& obstacle);
 
+    /// Builds what motion() needs, unless it is there: that takes as long as ten steps. Obstacles
+    /// without a motion() are passed over.
+    void prepare_motion(const Obstacle& obstacle);
+
     Counts counts() const;
     /// Meshes that are kept at present.
     int meshes() const;

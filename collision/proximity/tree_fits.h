@@ -28,6 +28,9 @@ class TreeFits {
         return nullptr;
     }
 
+    /// Whether nothing was added yet.
+    bool is_empty() const { return m_fits.empty(); }
+
     /// A tree to be fitted and added; null: there is none yet, build it.
     std::unique_ptr<Tree> take(long step) {
         while (m_fits.size() > 1 &&

@@ -86,6 +86,15 @@ std::vector<DataSet> data_sets() {
           {"tshirt_soft_gap.svg", figures + "speed_error_tshirt_soft_gap.svg"}}},
         real_time("tshirt"),
         real_time("tshirt_1000"),
+        {"max_ms",
+         figures + "max_ms.json",
+         "build/release/demos/speed_error --garment tshirt --frames 60 --relative-to "
+         "quasi-newton-10"
+         " --solvers quasi-newton-10,quasi-newton,quasi-newton@40,quasi-newton@20,"
+         "small+3,small,small@40,small@20 --out OUT",
+         "speed_error.json",
+         {},
+         {}},
         {"hard_cases",
          figures + "hard_cases.json",
          "build/release/demos/hard_cases"

@@ -25,6 +25,7 @@ const Registry& doc_registry() {
          {"whole_motion", {"whole_motion"}, whole_motion_table},
          {"speed_error", {"speed_error"}, speed_error_table},
          {"real_time", {"real_time_tshirt", "real_time_tshirt_1000"}, real_time_table},
+         {"max_ms", {"max_ms"}, real_time_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},

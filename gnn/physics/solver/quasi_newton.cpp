@@ -75,7 +75,7 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
 
 MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Points& x,
                                      const IterationLimits& limits, const PotentialValue* at_x,
-                                     const Deadline& deadline) {
+                                     const Deadline& deadline, const Deadline& for_more) {
     MinimiseReport report;
     if (!start(potential, x, at_x, report)) {
         report.finite = false;
@@ -95,7 +95,8 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
             const double now = deadline.left();
             longest = std::max(longest, left - now);
             left = now;
-            report.out_of_time = left < longest;
+            const bool more = report.iterations >= limits.least();
+            report.out_of_time = (more ? std::min(left, for_more.left()) : left) < longest;
             if (report.out_of_time) break;
         }
         if (!iterate(potential, x, report)) {

@@ -25,6 +25,12 @@ struct IterationLimits {
     static IterationLimits controlled(int least = 10, int most = 100) {
         return {most, least, 0.0, 3e-3};
     }
+    /// Those that are made whatever they gain.
+    int least() const {
+        return least_iterations > 0 && least_iterations < iterations ? least_iterations
+                                                                     : iterations;
+    }
+
     static IterationLimits exactly(int count) { return {count, 0, 0.0, 0.0}; }
     /// None at all: a step is where it starts, such as the network's answer.
     static IterationLimits none() { return exactly(0); }
@@ -85,9 +91,10 @@ class QuasiNewton {
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
                             const PotentialValue* at_x = nullptr);
     /// The same within other limits than the settings', the first iteration whatever the deadline.
+    /// @param for_more  the deadline of iterations beyond limits.least()
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
                             const IterationLimits& limits, const PotentialValue* at_x = nullptr,
-                            const Deadline& deadline = {});
+                            const Deadline& deadline = {}, const Deadline& for_more = {});
 
     /// Makes P for a fabric and a time step (s) ahead of time; those of the last 16 are kept.
     /// False: not positive definite.

@@ -41,10 +41,14 @@ void add(const StepReport& part, StepReport& report) {
     report.times.contact += part.times.contact;
 }
 
-/// What a part like this takes with one iteration (ms).
-double least_ms(const StepReport& report) {
+/// What a part like this takes (ms) with as many iterations as it needs to be worth its while:
+/// cloth that is cut into parts of one or two tears, and is farther off than in one step of as
+/// many.
+double least_ms(const StepReport& report, const IterationLimits& limits) {
+    constexpr int kWorthwhile = 5;
     return report.times.proximity + report.times.contact +
-           report.times.solve / std::max(1, report.iterations);
+           std::min(limits.iterations, kWorthwhile) * report.times.solve /
+               std::max(1, report.iterations);
 }
 
 }  // namespace
@@ -124,6 +128,9 @@ void ClothStepper::report_ignored(const Points& x, StepReport& report) {
 
 /// A step that turns out to be too coarse is taken once more, as finely as its report asks for.
 StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, ClothState& state) {
+    if (is_watched())  // a search must not begin with building in the midst of an animation
+        for (const Obstacle& obstacle : boundary.obstacles)
+            (boundary.trees ? *boundary.trees : *m_trees).prepare_motion(obstacle);
     const double motion = is_watched() ? relative_motion(*m_garment, boundary, dt, state) : 0.0;
     const int safe = std::max(m_substeps, substeps_for(motion, m_guard.max_motion));
     const int foreseen = affordable(safe, m_substeps);
@@ -155,15 +162,23 @@ StepReport ClothStepper::take(int substeps, const Boundary& boundary, double dt,
 
 StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double motion,
                                     ClothState& state) {
-    const bool search_it = is_watched() && motion > m_guard.watch_motion;
+    const bool should_search = is_watched() && motion > m_guard.watch_motion;
+    // Iterations come first: without them cloth tears, without the search a hand may pass through.
+    const bool search_it = should_search && m_search_ms + m_part_ms <= m_deadline.left();
     if (search_it) m_x_before = state.x;
-    m_solver->set_deadline(search_it
-                               ? m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms))
-                               : m_deadline);
+    if (search_it)
+        m_solver->set_deadline(m_deadline.earlier(m_search_ms),
+                               m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
+    else
+        m_solver->set_deadline(m_deadline);
     StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                         : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_x_before, state.x, report);
-    if (m_part_ms == 0.0) m_part_ms = least_ms(report);
+    if (should_search && !search_it) {
+        report.out_of_time = true;
+        m_search_ms *= 0.5;  // the next ones may be cheaper: the first of all is dear
+    }
+    m_part_ms = least_ms(report, m_guard.iterations);
     return report;
 }
 
@@ -191,7 +206,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
         const StepReport part = take_part(m_part.take(k), dt / substeps, limits);
         add(part, report);
         if (!report.finite) return report;
-        m_part_ms += least_ms(part) / substeps;
+        m_part_ms += least_ms(part, limits) / substeps;
     }
     m_state.time = state.time + dt;
     m_next_lag.substeps = substeps;
@@ -237,7 +252,7 @@ int ClothStepper::substeps_after(const StepReport& report, double motion) const 
     return substeps;
 }
 
-/// As many parts as there is time for, each with one iteration.
+/// As many parts as there is time for.
 int ClothStepper::affordable(int substeps, int least) const {
     const double left = m_deadline.left();
     while (substeps > least && substeps * m_part_ms > left)

@@ -106,10 +106,11 @@ class ClothStepper : public Stepper {
     /// Factorises for steps of this length and for their parts.
     void prepare(double dt) override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
-    /// Before the limit iterations end, parts are taken with fewer of them, then steps are cut into
-    /// fewer parts, and what may have been passed through is not searched for. The start, one
-    /// iteration for each part and contact projection take the time that they take. Of steps of
-    /// much motion half is kept for taking them again. Newton's method takes no notice (false).
+    /// Before the limit this gives way, in this order: iterations beyond the settings' least, which
+    /// in steps of much motion have half of the time only; parts of a step, each of which needs
+    /// time for five iterations; the search for what was passed through; the other iterations. The
+    /// start, one iteration for each part and contact projection take the time that they take.
+    /// Newton's method takes no notice (false).
     bool set_max_ms(double ms) override;
     bool internal_forces(const Points& x, Points& forces) const override;
     std::optional<double> internal_energy(const Points& x) const override {

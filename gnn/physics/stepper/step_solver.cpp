@@ -148,8 +148,8 @@ const PotentialValue* StepSolver::lower_of_guess_and_prediction(bool guess_known
 MinimiseReport StepSolver::minimise(const IterationLimits& limits, const PotentialValue* at_x) {
     if (m_settings.minimiser == MinimiserKind::newton)
         return m_newton.minimise(m_potential, m_x, at_x);
-    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x,
-                                   m_deadline.earlier(m_contact_ms));
+    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x, m_deadline.earlier(m_contact_ms),
+                                   m_deadline_for_more.earlier(m_contact_ms));
 }
 
 /// From m_x to the minimum, or as far as the limits allow. False: nothing is finite.

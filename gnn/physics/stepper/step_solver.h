@@ -62,7 +62,12 @@ class StepSolver {
     void prepare(double dt);
     /// When steps have to be done. The start, one iteration and contact are always computed, and
     /// Newton's method takes no notice.
-    void set_deadline(const Deadline& deadline) { m_deadline = deadline; }
+    /// @param for_more  of iterations beyond IterationLimits::least()
+    void set_deadline(const Deadline& deadline, const Deadline& for_more) {
+        m_deadline = deadline;
+        m_deadline_for_more = for_more;
+    }
+    void set_deadline(const Deadline& deadline) { set_deadline(deadline, deadline); }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
     /// A whole step, from the start that the settings name. The arguments have passed
@@ -111,7 +116,7 @@ class StepSolver {
     ContactProjection m_projection;
     SelfContactProjection m_self_contact;
     SurfaceContacts m_contacts;
-    Deadline m_deadline;
+    Deadline m_deadline, m_deadline_for_more;
     double m_contact_ms = 0.0;  ///< what contact took in the last step
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)

@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <thread>
 
 #include "collision/ccd/tunnelling.h"
+#include "collision/geometry/motion_tree.h"
 #include "collision/proximity/mesh_surface.h"
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
@@ -231,6 +233,36 @@ TEST(ObstacleTrees, ThreadsMayBeAtDifferentPoses) {
         const Answers expected = fresh_answers(body.step(step % 11), x);
         for (const auto& mine : found) expect_same_bits(*mine[size_t(step)], expected);
     }
+}
+
+TEST(ObstacleTrees, WhatMotionNeedsIsBuiltAheadAndOnce) {
+    const RoughBody body;
+    const auto trees = std::make_shared<ObstacleTrees>();
+    for (int step = 0; step < 3; ++step) {
+        trees->begin_step();
+        trees->prepare_motion(body.step(step, trees).obstacles[0]);
+        EXPECT_EQ(trees->counts().builds, 1);
+        EXPECT_EQ(trees->counts().motion_fits, 0);
+    }
+    const Boundary boundary = body.step(3, trees);
+    const std::shared_ptr<const MotionTree> prepared = trees->motion(boundary.obstacles[0]);
+    ASSERT_TRUE(prepared);
+    EXPECT_EQ(trees->counts().builds, 1);
+    ObstacleTrees fresh;
+    const std::shared_ptr<const MotionTree> built = fresh.motion(boundary.obstacles[0]);
+    const auto faces_met = [&](const MotionTree& tree) {
+        std::vector<int> stack, faces;
+        tree.for_each_met(tree.box_of(Vec3(-0.9, 0.1, 0.0), Vec3(1.8, 0.0, 0.0)), 0.0f, stack,
+                          [&](int face) { faces.push_back(face); });
+        std::sort(faces.begin(), faces.end());
+        return faces;
+    };
+    EXPECT_FALSE(faces_met(*built).empty());
+    EXPECT_EQ(faces_met(*prepared), faces_met(*built));
+    Obstacle sphere;
+    sphere.shape = ObstacleShape::sphere;
+    trees->prepare_motion(sphere);
+    EXPECT_EQ(trees->counts().builds, 1);
 }
 
 TEST(ObstacleTrees, AMeshThatChangesInPlaceIsNoticed) {

@@ -228,6 +228,27 @@ TEST(QuasiNewton, GoesOnWhileItGainsAndNotBeforeTheLeastIterations) {
     EXPECT_THROW(QuasiNewton(calm.garment, wrong), ArgumentError);
 }
 
+TEST(QuasiNewton, IterationsThatAreMadeInAnyCaseHaveADeadlineOfTheirOwn) {
+    SolverScene torn = swinging_sheet(8);
+    torn.state.x.col(0) *= 3.0;
+    torn.boundary.pin_targets = cloth::test::rows_of(torn.state.x, torn.garment.pins());
+    const Step step(torn);
+    const auto minimise = [&](const IterationLimits& limits, double ms, double ms_for_more) {
+        Points x = step.guess;
+        return QuasiNewton(torn.garment, limits)
+            .minimise(step.potential, x, limits, nullptr, Deadline::in(ms),
+                      Deadline::in(ms_for_more));
+    };
+    const MinimiseReport least = minimise(IterationLimits::controlled(7, 60), 1e7, 0.0);
+    EXPECT_EQ(least.iterations, 7);
+    EXPECT_TRUE(least.out_of_time);
+    EXPECT_EQ(minimise(IterationLimits::exactly(9), 1e7, 0.0).iterations, 9);
+    EXPECT_EQ(minimise(IterationLimits::controlled(7, 60), 0.0, 1e7).iterations, 1);
+    const MinimiseReport more = minimise(IterationLimits::controlled(7, 60), 1e7, 1e7);
+    EXPECT_GT(more.iterations, 10);
+    EXPECT_FALSE(more.out_of_time);
+}
+
 TEST(ContactHessian, BlocksOfRidgesAreTheirHessian) {
     const SolverScene scene = swinging_sheet(6);
     SurfaceContacts contacts;

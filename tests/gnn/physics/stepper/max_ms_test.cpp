@@ -80,6 +80,34 @@ TEST_F(MaxMs, WithoutTimeFastStepsAreCutIntoFewerParts) {
     EXPECT_LE(report.max_penetration, 1e-4);
 }
 
+/// Its whole steps take 20 ms for as many iterations as are asked for, and say so.
+class SlowWhole : public StepSolver {
+ public:
+    SlowWhole(const Garment& garment, int iterations)
+        : StepSolver(garment, {}), m_iterations(iterations) {}
+    StepReport whole(const Boundary& boundary, double dt, ClothState& state) override {
+        StepReport report = StepSolver::whole(boundary, dt, state);
+        report.times = {};
+        report.times.solve = 20.0;
+        report.iterations = m_iterations;
+        report.max_entry = 1.0;  // asks for parts
+        return report;
+    }
+
+ private:
+    int m_iterations;
+};
+
+TEST_F(MaxMs, PartsThatCouldNotHaveFiveIterationsAreNotTaken) {
+    ClothStepper dear(m_garment, std::make_unique<SlowWhole>(m_garment, 1));  // 100 ms a part
+    dear.set_max_ms(150.0);
+    EXPECT_EQ(dear.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
+    ClothStepper cheap(m_garment, std::make_unique<SlowWhole>(m_garment, 100));  // 1 ms
+    cheap.set_max_ms(150.0);
+    m_state = ClothState::at_rest(m_garment);
+    EXPECT_GT(cheap.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
+}
+
 TEST_F(MaxMs, StepsThatAreAlwaysCutStayCut) {
     ClothStepperSettings settings;
     settings.substeps = 4;
