@@ -90,8 +90,8 @@ TEST(Contest, ASheetGivesRowsOfSenseTwice) {
 }
 
 TEST(Contest, ASphereIsAnObstacle) {
-    const SceneReport report =
-        measure_scene(tiny("sphere"), contest_of({"quasi-newton-3@1000"}, "speed_error_sphere"), quiet);
+    const SceneReport report = measure_scene(
+        tiny("sphere"), contest_of({"quasi-newton-3@1000"}, "speed_error_sphere"), quiet);
     EXPECT_EQ(report.description.at("obstacles"), 1);
     EXPECT_GE(report.rows[0].penetration_max_mm, 0.0);
     EXPECT_GT(report.rows[0].peak_memory_mb, 0.0);
