@@ -91,7 +91,7 @@ class QuasiNewton {
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
                             const PotentialValue* at_x = nullptr);
     /// The same within other limits than the settings', the first iteration whatever the deadline.
-    /// @param for_more  the deadline of iterations beyond limits.least()
+    /// @param for_more  where there is a deadline, also one of iterations beyond limits.least()
     MinimiseReport minimise(const IncrementalPotential& potential, Points& x,
                             const IterationLimits& limits, const PotentialValue* at_x = nullptr,
                             const Deadline& deadline = {}, const Deadline& for_more = {});

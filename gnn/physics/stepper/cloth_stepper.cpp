@@ -165,12 +165,12 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     const bool should_search = is_watched() && motion > m_guard.watch_motion;
     // Iterations come first: without them cloth tears, without the search a hand may pass through.
     const bool search_it = should_search && m_search_ms + m_part_ms <= m_deadline.left();
-    if (search_it) m_x_before = state.x;
-    if (search_it)
+    m_solver->set_deadline(m_deadline);
+    if (search_it) {
+        m_x_before = state.x;
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
-    else
-        m_solver->set_deadline(m_deadline);
+    }
     StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                         : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_x_before, state.x, report);

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double frame_time = 1.0 / 30.0;
 constexpr double no_time = 1e-6;  // ms
+constexpr double kHour = 3.6e6;   // ms
 
 /// A level sheet above a ball.
 class MaxMs : public ::testing::Test {
@@ -80,7 +81,8 @@ TEST_F(MaxMs, WithoutTimeFastStepsAreCutIntoFewerParts) {
     EXPECT_LE(report.max_penetration, 1e-4);
 }
 
-/// Its whole steps take 20 ms for as many iterations as are asked for, and say so.
+/// Its whole steps say that they took an hour for so many iterations, and ask for parts: hours, so
+/// that how fast the machine is does not count.
 class SlowWhole : public StepSolver {
  public:
     SlowWhole(const Garment& garment, int iterations)
@@ -88,9 +90,9 @@ class SlowWhole : public StepSolver {
     StepReport whole(const Boundary& boundary, double dt, ClothState& state) override {
         StepReport report = StepSolver::whole(boundary, dt, state);
         report.times = {};
-        report.times.solve = 20.0;
+        report.times.solve = kHour;
         report.iterations = m_iterations;
-        report.max_entry = 1.0;  // asks for parts
+        report.max_entry = 1.0;
         return report;
     }
 
@@ -99,11 +101,11 @@ class SlowWhole : public StepSolver {
 };
 
 TEST_F(MaxMs, PartsThatCouldNotHaveFiveIterationsAreNotTaken) {
-    ClothStepper dear(m_garment, std::make_unique<SlowWhole>(m_garment, 1));  // 100 ms a part
-    dear.set_max_ms(150.0);
+    ClothStepper dear(m_garment, std::make_unique<SlowWhole>(m_garment, 1));  // 5 hours a part
+    dear.set_max_ms(7.5 * kHour);
     EXPECT_EQ(dear.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
-    ClothStepper cheap(m_garment, std::make_unique<SlowWhole>(m_garment, 100));  // 1 ms
-    cheap.set_max_ms(150.0);
+    ClothStepper cheap(m_garment, std::make_unique<SlowWhole>(m_garment, 100));  // 3 minutes
+    cheap.set_max_ms(7.5 * kHour);
     m_state = ClothState::at_rest(m_garment);
     EXPECT_GT(cheap.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
 }
