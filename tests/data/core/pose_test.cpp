@@ -49,13 +49,14 @@ TEST(Interpolate, PosesOfSinglePrecisionStayRotationsFarBeyondTheEnd) {
     EXPECT_NEAR(Eigen::AngleAxisd(turn).angle(), 0.38, 1e-5);
 }
 
-TEST(RotationBetween, IsEigensBitForBit) {
+TEST(RotationBetween, IsEigens) {
     std::mt19937 random(2);
     const Points from = random_points(random, 200, 3.0), to = random_points(random, 200, 0.1);
     for (Eigen::Index i = 0; i < from.rows(); ++i) {
         const Vec3 a = from.row(i), b = to.row(i);
         const Eigen::Quaterniond turn = rotation_between(a, b);
-        EXPECT_EQ(turn.coeffs(), Eigen::Quaterniond::FromTwoVectors(a, b).coeffs());
+        const Eigen::Quaterniond reference = Eigen::Quaterniond::FromTwoVectors(a, b);
+        EXPECT_LT((turn.coeffs() - reference.coeffs()).cwiseAbs().maxCoeff(), 1e-15);
         EXPECT_LT((turn * a.normalized() - b.normalized()).norm(), 1e-12);
     }
 }
