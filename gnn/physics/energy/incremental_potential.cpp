@@ -28,7 +28,7 @@ void check_settings(const PotentialSettings& settings) {
     check_range("PotentialSettings.ridge_distance", settings.ridge_distance, 0.0, distance);
     check_range("PotentialSettings.friction_scale", settings.friction_scale, 0.0, 10.0);
     check_range("PotentialSettings.friction_distance", settings.friction_distance, 0.0, 0.1);
-    check_range("PotentialSettings.friction_slip", settings.friction_slip, 1e-7, 1e-2);
+    check_range("PotentialSettings.friction_slip_speed", settings.friction_slip_speed, 1e-5, 1.0);
     check_range("PotentialSettings.friction_limit", settings.friction_limit, 0.0, 100.0);
 }
 
@@ -91,7 +91,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     m_ridges.begin_step(contacts, m_settings.ridge_distance);
     m_friction.begin_step(
         *m_garment, state, boundary, contacts,
-        {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip,
+        {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip_speed * dt,
          m_settings.contact_distance, m_settings.contact_weight, m_settings.friction_limit});
     m_self_contact.begin_step(state, dt);
     m_force_scale = norm_of_forces_at(state);

@@ -27,7 +27,9 @@ struct PotentialSettings {
     double ridge_distance = 1e-3;
     double friction_scale = 1.0;      ///< on the obstacles' coefficients, 0 to 10; 0: no friction
     double friction_distance = 6e-3;  ///< friction acts on vertices closer than this (m), 0 to 0.1
-    double friction_slip = 1e-4;      ///< slip (m) below which friction is smoothed, 1e-7 to 1e-2
+    /// Sliding slower than this (m/s, 1e-5 to 1) feels less than its friction: so fast, at most, is
+    /// the creep of cloth that friction holds.
+    double friction_slip_speed = 3e-3;
     /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
     /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
     double friction_limit = 10.0;

@@ -57,7 +57,8 @@ TEST(RotationBetween, IsEigens) {
         const Eigen::Quaterniond turn = rotation_between(a, b);
         const Eigen::Quaterniond reference = Eigen::Quaterniond::FromTwoVectors(a, b);
         EXPECT_LT((turn.coeffs() - reference.coeffs()).cwiseAbs().maxCoeff(), 1e-15);
-        EXPECT_LT((turn * a.normalized() - b.normalized()).norm(), 1e-12);
+        // rounding is magnified where the directions are nearly opposite
+        EXPECT_LT((turn * a.normalized() - b.normalized()).norm(), 1e-9);
     }
 }
 

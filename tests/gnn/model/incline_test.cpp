@@ -65,7 +65,7 @@ class Incline : public ::testing::TestWithParam<Case> {
 };
 
 TEST_P(Incline, HoldsBelowTheFrictionAngle) {
-    // Friction is smoothed below a slip of 0.1 mm a step: it creeps, 6 mm/s at the most.
+    // Friction is smoothed below a slip of 3 mm/s: it creeps so fast at the most.
     EXPECT_LT(std::abs(slide(15 * degree)), 0.012);
     EXPECT_LT(std::abs(slide(20 * degree)), 0.012);
 }

@@ -236,7 +236,7 @@ TEST_P(PotentialTest, SettingsOutOfRangeAreRefused) {
     settings.contact_weight = -1.0;
     EXPECT_THROW(IncrementalPotential(garment, settings), ArgumentError);
     settings = {};
-    settings.friction_slip = 0.0;
+    settings.friction_slip_speed = 0.0;
     EXPECT_THROW(IncrementalPotential(garment, settings), ArgumentError);
 }
 

@@ -163,15 +163,23 @@ TEST_P(ReferenceStep, AFastSpherePushesTheSheetAhead) {
 TEST_P(ReferenceStep, HoldsBelowTheFrictionAngleAndSlidesAbove) {
     const double friction = 0.5, dt = 1.0 / 60.0;  // friction angle 26.6 degrees
     const int steps = 20;
-    // Below it only the smoothing creeps: slip r / sqrt(1 - r^2) per step, r = tan(angle) / mu.
+    // Below it only the smoothing creeps, by v r / sqrt(1 - r^2), r = tan(angle) / mu.
     const double below = 20.0 * pi / 180.0, r = std::tan(below) / friction;
-    const double creep = PotentialSettings().friction_slip * r / std::sqrt(1.0 - r * r);
-    EXPECT_LT(slide(below, friction, GetParam(), steps, dt), 1.2 * steps * creep);
+    const double creep = PotentialSettings().friction_slip_speed * r / std::sqrt(1.0 - r * r);
+    EXPECT_LT(slide(below, friction, GetParam(), steps, dt), 1.2 * steps * dt * creep);
     // Above it, backward Euler of the Coulomb acceleration g (sin - mu cos).
     const double above = 35.0 * pi / 180.0;
     const double a = 9.81 * (std::sin(above) - friction * std::cos(above));
     const double expected = 0.5 * a * dt * dt * steps * (steps + 1);
     EXPECT_NEAR(slide(above, friction, GetParam(), steps, dt), expected, 0.03 * expected);
+}
+
+TEST_P(ReferenceStep, CreepOfClothThatFrictionHoldsDoesNotGrowWithTheRate) {
+    const double angle = 20.0 * pi / 180.0, seconds = 0.5;
+    const double at_30 = slide(angle, 0.5, GetParam(), 15, seconds / 15);
+    const double at_240 = slide(angle, 0.5, GetParam(), 120, seconds / 120);
+    EXPECT_GT(at_30, 0.0);
+    EXPECT_NEAR(at_240, at_30, 0.1 * at_30);
 }
 
 TEST_P(ReferenceStep, AFailedStepLeavesTheStateUntouched) {
