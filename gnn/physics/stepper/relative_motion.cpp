@@ -21,15 +21,26 @@ Box swept_box(const ClothState& state, const Vec3& shift) {
     return Box(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach));
 }
 
+/// Of the vertices, and of the faces: a large one may be near although no corner of it is.
 double mesh_motion(const Obstacle& mesh, const Box& box, const Vec3& shift) {
-    if (mesh.x0.rows() != mesh.x1.rows()) return 0.0;
-    double farthest = 0.0;
-    for (Eigen::Index i = 0; i < mesh.x0.rows(); ++i) {
+    if (mesh.x0.rows() != mesh.x1.rows() || !mesh.faces) return 0.0;
+    const auto path = [&](Eigen::Index i) {
         const Vec3 from = mesh.x0.row(i), to = mesh.x1.row(i);
-        const double motion = (to - from - shift).squaredNorm();
-        if (motion <= farthest) continue;
-        Box path(from.cwiseMin(to), from.cwiseMax(to));
-        if (box.intersects(path)) farthest = motion;
+        return Box(from.cwiseMin(to), from.cwiseMax(to));
+    };
+    const VectorX motion =
+        ((mesh.x1 - mesh.x0).rowwise() - shift.transpose()).rowwise().squaredNorm();
+    double farthest = 0.0;
+    for (Eigen::Index i = 0; i < motion.size(); ++i)
+        if (motion[i] > farthest && box.intersects(path(i))) farthest = motion[i];
+    for (const auto& corners : mesh.faces->rowwise()) {
+        if (corners.minCoeff() < 0 || corners.maxCoeff() >= motion.size()) continue;
+        const double most = std::max({motion[corners[0]], motion[corners[1]], motion[corners[2]]});
+        if (most <= farthest) continue;
+        Box all = path(corners[0]);
+        all.extend(path(corners[1]));
+        all.extend(path(corners[2]));
+        if (box.intersects(all)) farthest = most;
     }
     return std::sqrt(farthest);
 }
