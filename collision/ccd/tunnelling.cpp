@@ -32,8 +32,26 @@ struct Place {
     bool known = false;
     double time = 0.0;  ///< when it was crossed, 0 to 1
     int face = -1;
+    Vec3 barycentric = Vec3::Zero();  ///< in that face
     Vec3 point = Vec3::Zero(), normal = Vec3::Zero();
 };
+
+/// @param place  in the frame of a primitive
+CarriedPoint carried_point(const Obstacle& obstacle, const Place& place) {
+    if (obstacle.shape != ObstacleShape::mesh)
+        return {-1,
+                place.point,
+                obstacle.pose0 * place.point,
+                obstacle.pose1 * place.point,
+                obstacle.pose0.linear() * place.normal,
+                obstacle.pose1.linear() * place.normal};
+    const Corners start = corners_of(obstacle.x0, *obstacle.faces, place.face);
+    Vec3 point = Vec3::Zero(), normal = place.normal;
+    for (int k = 0; k < 3; ++k) point += place.barycentric[k] * start[static_cast<size_t>(k)];
+    Vec3 at_start;
+    if (triangle_normal(start[0], start[1], start[2], at_start)) normal = at_start;
+    return {place.face, place.barycentric, point, place.point, normal, place.normal};
+}
 
 /// Where a point that moves from p0 to p1 crosses a face, and whether to the outside.
 bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corners& end, int face,
@@ -53,7 +71,7 @@ bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corn
         motion -= weight[k] * (end[corner] - start[corner]);
     }
     outwards = (at[1] - at[0]).cross(at[2] - at[0]).dot(motion) > 0.0;
-    place = {true, time, face, point, normal};
+    place = {true, time, face, weight, point, normal};
     return true;
 }
 
@@ -140,14 +158,18 @@ void TunnellingDetector::complete(const Boundary& boundary, int obstacle, const 
         const bool deep = m_contacts.obstacle[static_cast<size_t>(i)] != obstacle ||
                           m_contacts.distance[i] < -shallow;
         if (!deep)
-            place = {true, start ? 0.0 : 1.0, m_contacts.face[static_cast<size_t>(i)],
-                     m_contacts.point1.row(i), m_contacts.normal1.row(i)};
+            place = {true,
+                     start ? 0.0 : 1.0,
+                     m_contacts.face[static_cast<size_t>(i)],
+                     m_contacts.barycentric.row(i),
+                     m_contacts.point1.row(i),
+                     m_contacts.normal1.row(i)};
         else if (!start)  // it is in there: as if through
-            place = {true, 1.0, -1, x.row(i), -crossing.in.normal};
+            place = {true, 1.0, -1, Vec3::Zero(), x.row(i), -crossing.in.normal};
     }
 }
 
-void TunnellingDetector::report(const Crossing& crossing, int obstacle,
+void TunnellingDetector::report(const Crossing& crossing, const Boundary& boundary, int obstacle,
                                 const std::vector<std::uint8_t>* limbs) {
     const Place& in = crossing.in;
     const Place& out = crossing.out;
@@ -156,7 +178,8 @@ void TunnellingDetector::report(const Crossing& crossing, int obstacle,
     if (out_limb && limb != out_limb) return;
     const double thickness = (in.point - out.point).norm();
     if (thickness >= least_thickness)
-        m_found.push_back({crossing.point, obstacle, limb, thickness});
+        m_found.push_back({crossing.point, obstacle, limb, thickness,
+                           carried_point(boundary.obstacles[static_cast<size_t>(obstacle)], in)});
 }
 
 void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0,
@@ -184,7 +207,7 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
                     find_part);
     complete(boundary, obstacle, x0, StepEnd::start);
     complete(boundary, obstacle, x1, StepEnd::end);
-    for (const Crossing& crossing : m_crossings) report(crossing, obstacle, limbs);
+    for (const Crossing& crossing : m_crossings) report(crossing, boundary, obstacle, limbs);
 }
 
 void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
@@ -197,11 +220,12 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
         const PrimitivePath path = follow_path(shape, p0, p1);
         if (!path.meets || path.in.distance < -shallow) return;
         const auto place = [](const PrimitiveHit& hit) {
-            return Place{true, 0.0, -1, hit.point, hit.normal};
+            return Place{true, 0.0, -1, Vec3::Zero(), hit.point, hit.normal};
         };
         Crossing crossing{point, place(path.in), place(path.out)};
-        if (path.out.distance < -shallow) crossing.out = {true, 1.0, -1, p1, -path.in.normal};
-        report(crossing, obstacle, nullptr);
+        if (path.out.distance < -shallow)
+            crossing.out = {true, 1.0, -1, Vec3::Zero(), p1, -path.in.normal};
+        report(crossing, boundary, obstacle, nullptr);
     };
     const int count = static_cast<int>(x0.rows());
     for (int i = 0; i < count; ++i)
@@ -213,6 +237,37 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
         for (const int vertex : corners.vertex) ignored |= ignored_limbs(boundary, vertex);
         if (m_samples.is_movable(sample) && (ignored & shape.solid) == 0)
             follow(count + sample, corners.position(x0), corners.position(x1));
+    }
+}
+
+void TunnellingDetector::hold_where_they_went_in(SurfaceContacts& contacts, Points& x) const {
+    const auto lift = [&](int vertex, double depth, const Vec3& normal) {
+        if (depth > 0.0 && !m_pinned[static_cast<size_t>(vertex)])
+            x.row(vertex) += depth * normal.transpose();
+    };
+    const int count = static_cast<int>(x.rows());
+    for (const Tunnelling& through : m_found) {
+        const CarriedPoint& in = through.in;
+        const double height = in.normal1.dot(in.point1);
+        if (through.point < count) {
+            const int i = through.point;
+            contacts.obstacle[static_cast<size_t>(i)] = through.obstacle;
+            contacts.face[static_cast<size_t>(i)] = in.face;
+            contacts.barycentric.row(i) = in.barycentric;
+            contacts.point0.row(i) = in.point0;
+            contacts.point1.row(i) = in.point1;
+            contacts.normal0.row(i) = in.normal0;
+            contacts.normal1.row(i) = in.normal1;
+            contacts.distance[i] = 0.0;
+            lift(i, height - x.row(i).dot(in.normal1), in.normal1);
+            continue;
+        }
+        const SurfaceSamples::OnFace on = m_samples.on_face(through.point - count);
+        contacts.ridges.push_back({on.face, on.weight, in.normal1, height});
+        const SurfaceSamples::Corners corners = m_samples.corners(through.point - count);
+        const double depth = height - corners.position(x).dot(in.normal1);
+        for (int k = 0; k < corners.count(); ++k)
+            lift(corners.vertex[static_cast<size_t>(k)], depth, in.normal1);
     }
 }
 

@@ -11,12 +11,21 @@
 
 namespace cloth {
 
+/// A point of an obstacle's surface at both ends of a step.
+struct CarriedPoint {
+    int face = -1;                    ///< of a mesh
+    Vec3 barycentric = Vec3::Zero();  ///< in that face, or the point in a primitive's frame
+    Vec3 point0 = Vec3::Zero(), point1 = Vec3::Zero();    ///< at t and at t + dt (m)
+    Vec3 normal0 = Vec3::Zero(), normal1 = Vec3::Zero();  ///< unit, outward
+};
+
 /// A point of a garment's surface that went through a solid.
 struct Tunnelling {
     int point = -1;           ///< a vertex, or |V| + a sample (see SurfaceSamples)
     int obstacle = -1;        ///< index into Boundary::obstacles
     std::optional<int> limb;  ///< of that obstacle; none: it has no limbs
     double thickness = 0.0;   ///< from where it went in to where it came out, at t + dt (m)
+    CarriedPoint in;          ///< where it went in
 };
 
 /// Continuous collision detection: what a garment went through between two frames, although it is
@@ -54,6 +63,12 @@ class TunnellingDetector {
 
     const std::vector<Tunnelling>& found() const { return m_found; }
 
+    /// Holds what was found on the side that it came from: in `contacts`, the nearest points of |V|
+    /// vertices, those of vertices that went through something become the points where they went
+    /// in, at no distance; face centres and edge midpoints get contacts of their own, as over
+    /// ridges. `x` (|V| x 3, m, at t + dt) is moved out to these planes; pins are not.
+    void hold_where_they_went_in(SurfaceContacts& contacts, Points& x) const;
+
     /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
     /// as thick as the longest way through it; none: nothing was gone through.
     std::optional<double> thinnest() const;
@@ -68,7 +83,8 @@ class TunnellingDetector {
     static Crossing cross(const Obstacle& mesh, const MotionTree& tree, const Vec3& p0,
                           const Vec3& p1, LimbSet ignored, std::vector<int>& stack);
     void complete(const Boundary& boundary, int obstacle, const Points& x, StepEnd end);
-    void report(const Crossing& crossing, int obstacle, const std::vector<std::uint8_t>* limbs);
+    void report(const Crossing& crossing, const Boundary& boundary, int obstacle,
+                const std::vector<std::uint8_t>* limbs);
 
     SurfaceSamples m_samples;
     std::vector<char> m_pinned;  ///< |V|

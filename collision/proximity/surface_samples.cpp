@@ -56,6 +56,17 @@ SurfaceSamples::Corners SurfaceSamples::corners(int sample) const {
     return {{a, b, b}, {0.5, 0.5, 0.0}};
 }
 
+SurfaceSamples::OnFace SurfaceSamples::on_face(int sample) const {
+    const Corners at = corners(sample);
+    if (sample < face_count()) return {sample, at.weight};
+    OnFace on{m_edge_faces[static_cast<size_t>(sample - face_count())][0], {}};
+    for (int k = 0; k < 3; ++k)
+        for (int corner = 0; corner < at.count(); ++corner)
+            if (m_faces(on.face, k) == at.vertex[static_cast<size_t>(corner)])
+                on.weight[static_cast<size_t>(k)] = at.weight[static_cast<size_t>(corner)];
+    return on;
+}
+
 Vec3 SurfaceSamples::way_out(int sample) const {
     return outward(m_contacts, sample, m_x);
 }

@@ -47,6 +47,12 @@ class SurfaceSamples {
     double max_depth() const;                                ///< of the deep ones, or 0 (m)
 
     Corners corners(int sample) const;
+    /// A face of the garment that the sample lies on, and the share of its corners in it.
+    struct OnFace {
+        int face;
+        std::array<double, 3> weight;
+    };
+    OnFace on_face(int sample) const;
     Vec3 position(int sample) const { return m_x.row(sample); }  ///< in the last call (m)
     Vec3 way_out(int sample) const;  ///< unit direction from a deep sample to its nearest point
     const SurfaceContacts& contacts() const { return m_contacts; }  ///< |samples|, of the deep ones

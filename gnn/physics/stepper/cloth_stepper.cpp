@@ -22,6 +22,13 @@ void check(const GuardSettings& settings) {
     check(settings.iterations, "GuardSettings.iterations");
 }
 
+void add_times(const StageTimes& part, StageTimes& times) {
+    times.proximity += part.proximity;
+    times.features += part.features;
+    times.solve += part.solve;
+    times.contact += part.contact;
+}
+
 void add(const StepReport& part, StepReport& report) {
     report.finite = part.finite;
     report.iterations += part.iterations;
@@ -35,10 +42,7 @@ void add(const StepReport& part, StepReport& report) {
         report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
     report.tangles = part.tangles;
     report.first_tangle = part.first_tangle;
-    report.times.proximity += part.times.proximity;
-    report.times.features += part.times.features;
-    report.times.solve += part.times.solve;
-    report.times.contact += part.times.contact;
+    add_times(part.times, report.times);
 }
 
 /// What a part like this takes (ms) with as many iterations as it needs to be worth its while:
@@ -166,19 +170,22 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     // Iterations come first: without them cloth tears, without the search a hand may pass through.
     const bool search_it = should_search && m_search_ms + m_part_ms <= m_deadline.left();
     m_solver->set_deadline(m_deadline);
-    if (search_it) {
-        m_x_before = state.x;
+    if (search_it)
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
-    }
+    if (is_watched()) m_start = state;
     StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                         : m_solver->part(boundary, dt, m_guard.iterations, state);
-    if (search_it && report.finite) search(boundary, m_x_before, state.x, report);
+    if (search_it && report.finite) search(boundary, m_start.x, state.x, report);
     if (should_search && !search_it) {
         report.out_of_time = true;
         m_search_ms *= 0.5;  // the next ones may be cheaper: the first of all is dear
     }
     m_part_ms = least_ms(report, m_guard.iterations);
+    if (is_watched() && m_part_ms + m_search_ms <= m_deadline.left()) {
+        m_solver->set_deadline(m_deadline.earlier(m_search_ms));
+        correct(boundary, dt, m_guard.iterations, search_it, state, report);
+    }
     return report;
 }
 
@@ -220,12 +227,35 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
 
 /// Advances m_state.
 StepReport ClothStepper::take_part(const Boundary& part, double dt, const IterationLimits& limits) {
-    const bool search_it =
-        is_watched() && relative_motion(*m_garment, part, dt, m_state) > m_guard.watch_motion;
-    if (search_it) m_x_before = m_state.x;
+    const double motion = is_watched() ? relative_motion(*m_garment, part, dt, m_state) : 0.0;
+    const bool search_it = motion > m_guard.watch_motion;
+    if (is_watched()) m_start = m_state;
     StepReport report = m_solver->part(part, dt, limits, m_state);
-    if (search_it && report.finite) search(part, m_x_before, m_state.x, report);
+    if (search_it && report.finite) search(part, m_start.x, m_state.x, report);
+    if (is_watched() && !m_deadline.is_set()) correct(part, dt, limits, search_it, m_state, report);
     return report;
+}
+
+/// A step that went past a surface, or through a solid, is taken on with contacts that hold it
+/// there. Most need nothing else; the others are taken again in parts.
+void ClothStepper::correct(const Boundary& boundary, double dt, const IterationLimits& limits,
+                           bool searched, ClothState& state, StepReport& report) {
+    if (!report.finite || !went_past(report)) return;
+    m_corrected = m_start;
+    StepReport corrected = m_solver->correct(boundary, dt, report.tunnelled ? &m_detector : nullptr,
+                                             limits, m_corrected);
+    if (!corrected.finite) return;
+    if (searched) search(boundary, m_start.x, m_corrected.x, corrected);
+    add_times(corrected.times, report.times);
+    report.iterations += corrected.iterations;
+    if (corrected.tunnelled || corrected.max_entry > std::max(report.max_entry, m_guard.max_entry))
+        return;
+    corrected.iterations = report.iterations;
+    corrected.times = report.times;
+    corrected.prediction_rejected = report.prediction_rejected;
+    corrected.out_of_time = corrected.out_of_time || report.out_of_time;
+    report = corrected;
+    std::swap(state, m_corrected);
 }
 
 void ClothStepper::search(const Boundary& boundary, const Points& x0, const Points& x1,

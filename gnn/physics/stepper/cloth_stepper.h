@@ -11,7 +11,11 @@
 
 namespace cloth {
 
-/// When a step is cut into parts.
+/// When a step is corrected, and when it is cut into parts.
+///
+/// A step that went past a surface, or through a solid, is taken on from where it ended, with the
+/// contacts that hold it there. That costs about half a step more. If it still went through, it is
+/// taken again in parts.
 struct GuardSettings {
     bool limbs = true;  ///< limbs of a body that pass through each other are told apart, see
                         ///< LimbOverlap
@@ -20,13 +24,13 @@ struct GuardSettings {
     /// proximity's radius: what comes from farther away would pass through.
     double max_motion = 0.1;
     /// Steps that leave a vertex deeper inside an obstacle than this (m, before contact projection)
-    /// went past a surface: they are taken again in sub-steps of `fine_motion`, 1e-3 to 0.1.
+    /// went past a surface, 1e-3 to 0.1. Their sub-steps are of `fine_motion`.
     double max_entry = 0.01;
     double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
     /// Steps of more motion than this (m, 5e-3 to 1) are searched for solids that the garment went
-    /// through on the way, see TunnellingDetector. They are taken again in sub-steps of
-    /// `tunnelling_motion`, or of half as much motion as the solid is thick: in these the nearest
-    /// surface is the one that the cloth came from.
+    /// through on the way, see TunnellingDetector. Their sub-steps are of `tunnelling_motion`, or
+    /// of half as much motion as the solid is thick: in these the nearest surface is the one that
+    /// the cloth came from.
     double watch_motion = 0.02;
     double tunnelling_motion = 0.01;  ///< (m), 1e-3 to 1
     int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
@@ -71,11 +75,11 @@ struct ClothStepperSettings {
     }
 };
 
-/// A garment as it should be simulated: steps of a StepSolver where one can be trusted, cut into
-/// parts where not: where obstacles or pins move too fast, where the step failed, and where it went
-/// past a surface or through a solid, such as a hand that swings through a hem. A jump of the body
-/// by metres (teleport, cut in an animation) is cut into max_substeps parts like any fast motion.
-/// Limbs of a body that pass through each other are handled as LimbOverlap says.
+/// A garment as it should be simulated: steps of a StepSolver where one can be trusted, corrected
+/// or cut into parts where not: where obstacles or pins move too fast, where the step failed, and
+/// where it went past a surface or through a solid, such as a hand that swings through a hem. A
+/// jump of the body by metres (teleport, cut in an animation) is cut into max_substeps parts like
+/// any fast motion. Limbs of a body that pass through each other are handled as LimbOverlap says.
 ///
 ///     ClothStepper stepper(garment);                    // physics alone
 ///     stepper.prepare(1.0 / 60.0);                      // optional: nothing is built in a frame
@@ -144,7 +148,12 @@ class ClothStepper : public Stepper {
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
     StepReport take_parts(int substeps, const Boundary& boundary, double dt, ClothState& state);
     StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits);
+    void correct(const Boundary& boundary, double dt, const IterationLimits& limits, bool searched,
+                 ClothState& state, StepReport& report);
     void search(const Boundary& boundary, const Points& x0, const Points& x1, StepReport& report);
+    bool went_past(const StepReport& report) const {
+        return report.tunnelled || report.max_entry > m_guard.max_entry;
+    }
     bool is_watched() const { return m_guard.max_substeps > 1; }
     int substeps_for(double motion, double most) const;
     int substeps_after(const StepReport& report, double motion) const;
@@ -157,9 +166,10 @@ class ClothStepper : public Stepper {
     LimbOverlap m_limbs;
     TunnellingDetector m_detector;
     BoundaryPart m_part;
-    ClothState m_before;    ///< from which a step is taken again
-    ClothState m_state;     ///< during a step of parts
-    Points m_x_before;      ///< |V| x 3 (m): of a step that is searched
+    ClothState m_before;  ///< from which a step is taken again
+    ClothState m_state;   ///< during a step of parts
+    ClothState m_start;   ///< of a step, or part of one, that may be corrected
+    ClothState m_corrected;
     Lag m_lag, m_next_lag;  ///< of the last step; of the one that is being taken
     double m_max_ms = std::numeric_limits<double>::infinity();
     Deadline m_deadline;       ///< of this step

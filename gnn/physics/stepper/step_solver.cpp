@@ -89,6 +89,28 @@ StepReport StepSolver::solve(const Boundary& boundary, double dt, StepStart* sta
         if (boundary.obstacles.empty() || report.out_of_time) break;
     }
     report.times.solve -= report.times.features;
+    return finish(boundary, dt, state, report);
+}
+
+StepReport StepSolver::correct(const Boundary& boundary, double dt,
+                               const TunnellingDetector* through, const IterationLimits& limits,
+                               ClothState& state) {
+    if (m_x.rows() != state.x.rows() || boundary.obstacles.empty()) return StepReport::failed();
+    StepReport report;
+    Stopwatch watch;
+    find_contacts(boundary, m_x, StepEnd::end);
+    if (through) through->hold_where_they_went_in(m_contacts, m_x);
+    report.times.proximity = watch.lap();
+    begin(boundary, dt, state);
+    if (!descend(boundary, limits, nullptr, state, report)) return StepReport::failed();
+    report.times.solve = watch.lap();
+    return finish(boundary, dt, state, report);
+}
+
+/// Contact projection of m_x, which becomes the state.
+StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& state,
+                              StepReport report) {
+    Stopwatch watch;
     project(boundary, state, report);
     m_contact_ms = report.times.contact = watch.lap();
     return accept(dt, state) ? report : StepReport::failed();

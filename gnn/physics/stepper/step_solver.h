@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "collision/ccd/tunnelling.h"
 #include "collision/proximity/ridge_contacts.h"
 #include "collision/response/contact_projection.h"
 #include "gnn/physics/energy/time_integration.h"
@@ -78,6 +79,13 @@ class StepSolver {
     virtual StepReport part(const Boundary& boundary, double dt, const IterationLimits& limits,
                             ClothState& state);
 
+    /// Takes the last step once more, on from where it ended: with the surface points that are
+    /// nearest to there, and where `through` is not null, what it found held where it went in.
+    /// @param state  as it was before the step
+    virtual StepReport correct(const Boundary& boundary, double dt,
+                               const TunnellingDetector* through, const IterationLimits& limits,
+                               ClothState& state);
+
     /// See Stepper::internal_forces().
     void internal_forces(const Points& x, Points& forces) const {
         m_potential.internal_forces(x, forces);
@@ -102,6 +110,7 @@ class StepSolver {
     bool descend(const Boundary& boundary, const IterationLimits& limits,
                  const PotentialValue* at_x, const ClothState& state, StepReport& report);
     void project(const Boundary& boundary, const ClothState& state, StepReport& report);
+    StepReport finish(const Boundary& boundary, double dt, ClothState& state, StepReport report);
     bool accept(double dt, ClothState& state);
 
     const Garment* m_garment;

@@ -168,6 +168,70 @@ TEST(Tunnelling, OfSmallPrimitivesAreSeenBetweenVertices) {
     EXPECT_NEAR(found[0].thickness, 0.012, 1e-5);
 }
 
+TEST(Tunnelling, AreHeldOnTheSideThatTheyCameFrom) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const Pose from = pose_of({0, -0.03, 0}), to = pose_of({0, 0.04, 0}, 0.1);
+    for (const Obstacle& plate :
+         {moving(scaled(cube(), {0.3, 0.01, 0.3}), from, to),
+          moving(primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0), from, to)}) {
+        const Boundary boundary = boundary_of({plate});
+        TunnellingDetector detector(garment);
+        const std::set<int> through = vertices_of(detector.find(boundary, x, x, 0), x.rows());
+        ASSERT_GT(through.size(), 100u);
+        SurfaceContacts contacts;
+        Proximity().query(x, boundary, contacts, StepEnd::end);
+        const SurfaceContacts nearest = contacts;
+        Points held = x;
+        detector.hold_where_they_went_in(contacts, held);
+        for (int i = 0; i < x.rows(); ++i) {
+            if (through.count(i) == 0) {
+                EXPECT_EQ(contacts.point1.row(i), nearest.point1.row(i));
+                continue;
+            }
+            if (x.row(i).cwiseAbs().maxCoeff() > 0.28) continue;  // near its sides
+            // the plate's upper side at both ends: it came from below
+            const Vec3 top0 = from.inverse() * Vec3(contacts.point0.row(i));
+            const Vec3 top1 = to.inverse() * Vec3(contacts.point1.row(i));
+            EXPECT_NEAR(top0.y(), 0.01, 1e-9);
+            EXPECT_LT((top0 - top1).norm(), 1e-9) << "the same point of it";
+            EXPECT_NEAR(contacts.normal0(i, 1), 1.0, 1e-9);
+            EXPECT_GT(to.linear().col(1).dot(contacts.normal1.row(i)), 1.0 - 1e-9);
+            EXPECT_GT((to.inverse() * Vec3(held.row(i))).y(), 0.01 - 1e-9);
+        }
+        detector.find(boundary, x, held, 0);
+        EXPECT_TRUE(vertices_of(detector.found(), x.rows()).empty());
+    }
+}
+
+TEST(Tunnelling, BetweenVerticesAreHeldByContactsOfTheirOwn) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    Obstacle rod = primitive(ObstacleShape::capsule, {0, 0.6, 0}, 0.004);
+    const Eigen::AngleAxisd along_x(0.5 * M_PI, Vec3::UnitZ());
+    for (const bool end : {false, true})
+        (end ? rod.pose1 : rod.pose0) =
+            Pose(Eigen::Translation3d(0.0, end ? 0.03 : -0.03, 0.013) * along_x);
+    const Boundary boundary = boundary_of({rod});
+    TunnellingDetector detector(garment);
+    const std::vector<Tunnelling> found = detector.find(boundary, x, x, 0);
+    ASSERT_GT(found.size(), 10u);
+    SurfaceContacts contacts;
+    Proximity().query(x, boundary, contacts, StepEnd::end);
+    Points held = x;
+    detector.hold_where_they_went_in(contacts, held);
+    ASSERT_GT(contacts.ridges.size(), 5u) << "faces and edges";
+    for (const RidgeContact& ridge : contacts.ridges) {
+        EXPECT_NEAR(ridge.weight[0] + ridge.weight[1] + ridge.weight[2], 1.0, 1e-12);
+        Vec3 point = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            point += ridge.weight[static_cast<size_t>(k)] *
+                     held.row(garment.rest().faces(ridge.face, k)).transpose();
+        EXPECT_GT(ridge.normal.y(), 0.5);
+        EXPECT_GT(ridge.normal.dot(point) - ridge.height, -1e-9);
+    }
+}
+
 TEST(Tunnelling, AreNotWhatSlidesOrCutsACorner) {
     const Garment garment = sheet();
     const Points& x = garment.rest().vertices;

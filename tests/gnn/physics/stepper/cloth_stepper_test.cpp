@@ -220,6 +220,15 @@ Obstacle as_mesh(const Obstacle& box) {
     return mesh;
 }
 
+TEST_F(Guard, AFaceIsFastWhereNoCornerOfItIsNear) {
+    m_boundary.obstacles = {as_mesh(plate(0.03, -0.03))};
+    m_boundary.obstacles[0].x0.rightCols(2) *= 100.0;
+    m_boundary.obstacles[0].x1.rightCols(2) *= 100.0;
+    EXPECT_NEAR(relative_motion(m_garment, m_boundary, dt, m_state), 0.06, 1e-12);
+    m_boundary.obstacles = {as_mesh(plate(5.0, 4.9))};
+    EXPECT_EQ(relative_motion(m_garment, m_boundary, dt, m_state), 0.0);
+}
+
 class Through : public Guard, public ::testing::WithParamInterface<bool> {
  protected:
     void place(const Obstacle& box) { m_boundary.obstacles = {GetParam() ? as_mesh(box) : box}; }
@@ -278,6 +287,31 @@ TEST_P(Through, WithoutSubstepsNothingIsWatched) {
 
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
                          [](const auto& scene) { return scene.param ? "mesh" : "box"; });
+
+/// A handkerchief that hangs before a ball does not see the plate that comes through the ball.
+TEST_P(Through, ASolidThatNoContactForesawIsHeldWithoutParts) {
+    TriMesh mesh = upright();
+    mesh.vertices *= 0.2;
+    const Garment garment("handkerchief", mesh, Fabric::soft_cotton(), {});
+    const ClothState start = ClothState::at_rest(garment);
+    place(plate(0.06, -0.03));
+    m_boundary.obstacles.push_back(ball(0.41, 0.41));
+    m_boundary.obstacles.back().radius = 0.4;
+    TunnellingDetector detector(garment);
+    const auto passed = [&](ClothStepper& stepper, StepReport& report) {
+        ClothState state = start;
+        report = stepper.step(m_boundary, dt, state);
+        return detector.find(m_boundary, start.x, state.x, 0).size();
+    };
+    StepReport report;
+    ClothStepper inner(garment, ClothStepperSettings::plain(GuardSettings().iterations));
+    ASSERT_GT(passed(inner, report), 500u) << "the scene is none";
+    ClothStepper stepper(garment);
+    EXPECT_EQ(passed(stepper, report), 0u);
+    EXPECT_EQ(report.substeps, 1);
+    EXPECT_FALSE(report.tunnelled);
+    EXPECT_LT(report.max_penetration, 1e-3);
+}
 
 TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
     m_boundary.obstacles = {ball(-0.2, -0.13)};

@@ -95,6 +95,10 @@ class SlowWhole : public StepSolver {
         report.max_entry = 1.0;
         return report;
     }
+    StepReport correct(const Boundary&, double, const TunnellingDetector*, const IterationLimits&,
+                       ClothState&) override {
+        return StepReport::failed();
+    }
 
  private:
     int m_iterations;
