@@ -89,10 +89,10 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     m_gravity.begin_step(boundary.gravity, boundary.accelerations);
     m_contact.begin_step(contacts, m_settings.contact_distance);
     m_ridges.begin_step(contacts, m_settings.ridge_distance);
-    m_friction.begin_step(
-        *m_garment, state, boundary, contacts,
-        {m_settings.friction_scale, m_settings.friction_distance, m_settings.friction_slip_speed * dt,
-         m_settings.contact_distance, m_settings.contact_weight, m_settings.friction_limit});
+    m_friction.begin_step(*m_garment, state, boundary, contacts,
+                          {m_settings.friction_scale, m_settings.friction_distance,
+                           m_settings.friction_slip_speed * dt, m_settings.contact_distance,
+                           m_settings.contact_weight, m_settings.friction_limit});
     m_self_contact.begin_step(state, dt);
     m_force_scale = norm_of_forces_at(state);
 }
