@@ -119,6 +119,20 @@ struct ObstacleTrees::KnownMeshes : Meshes {
             mesh->motions.add(step, build_motion(obstacle));
     }
 
+    void adopt(KnownMeshes& other, const Obstacle& obstacle) {
+        KnownMesh* mine = find(obstacle);
+        KnownMesh* theirs = other.find(obstacle);
+        if (!mine || !theirs) return;
+        add_copy(theirs->surfaces, mine->surfaces);
+        add_copy(theirs->motions, mine->motions);
+    }
+
+    template <typename Tree>
+    void add_copy(const TreeFits<Tree>& from, TreeFits<Tree>& to) {
+        if (!to.is_empty()) return;
+        if (std::unique_ptr<Tree> copy = from.copy()) to.add(step, std::move(copy));
+    }
+
     ObstacleTreesSettings settings;
     long step = 0;
     Counts counts;
@@ -147,6 +161,13 @@ void ObstacleTrees::prepare_motion(const Obstacle& obstacle) {
     if (!is_mesh(obstacle)) return;
     const std::lock_guard<std::mutex> lock(m_mutex);
     known().prepare_motion(obstacle);
+}
+
+void ObstacleTrees::adopt(ObstacleTrees& other, const Obstacle& obstacle) {
+    if (&other == this || other.m_settings.radius != m_settings.radius || !is_mesh(obstacle))
+        return;
+    const std::scoped_lock lock(m_mutex, other.m_mutex);
+    known().adopt(other.known(), obstacle);
 }
 
 ObstacleTrees::Counts ObstacleTrees::counts() const {

@@ -73,6 +73,10 @@ class ObstacleTrees {
     /// without a motion() are passed over.
     void prepare_motion(const Obstacle& obstacle);
 
+    /// Copies what `other`, made for the same radius, has built for a mesh obstacle and this has
+    /// not: much cheaper than to build it.
+    void adopt(ObstacleTrees& other, const Obstacle& obstacle);
+
     Counts counts() const;
     /// Meshes that are kept at present.
     int meshes() const;

@@ -31,13 +31,18 @@ class TreeFits {
     /// Whether nothing was added yet.
     bool is_empty() const { return m_fits.empty(); }
 
+    /// Of the tree that was used last; null: there is none.
+    std::unique_ptr<Tree> copy() const {
+        return m_fits.empty() ? nullptr : std::make_unique<Tree>(*m_fits.back().tree);
+    }
+
     /// A tree to be fitted and added; null: there is none yet, build it.
     std::unique_ptr<Tree> take(long step) {
         while (m_fits.size() > 1 &&
                (m_fits.front().last_step < step - 1 || m_fits.size() >= most_fits))
             m_fits.erase(m_fits.begin());
         if (std::unique_ptr<Tree> spare = m_spares->take()) return spare;
-        return m_fits.empty() ? nullptr : std::make_unique<Tree>(*m_fits.back().tree);
+        return copy();
     }
 
     Held add(long step, std::unique_ptr<Tree> tree) {

@@ -205,6 +205,11 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
     m_part.begin(*m_garment, state, boundary, substeps);
+    if (boundary.trees)  // poses of parts are no other garment's: they stay out of the world's
+        for (const Obstacle& obstacle : boundary.obstacles) {
+            boundary.trees->surface(obstacle, StepEnd::start);  // so that there is one to adopt
+            m_trees->adopt(*boundary.trees, obstacle);
+        }
     m_part_ms = 0.0;
     for (int k = 0; k < substeps; ++k) {
         if (k > 0) m_trees->begin_step();

@@ -164,6 +164,33 @@ TEST(ObstacleTrees, SubStepsWithoutThemLeaveTheWorldsFitsAlone) {
     EXPECT_EQ(trees->counts().surface_fits, 2);
 }
 
+TEST(ObstacleTrees, AdoptedHierarchiesAreNotBuiltAgainAndAnswerAlike) {
+    std::mt19937 random(5);
+    const RoughBody body;
+    const Points x = random_points(random, 200, 1.4);
+    const auto world = std::make_shared<ObstacleTrees>(), own = std::make_shared<ObstacleTrees>();
+    Proximity shirt({0.4, 0});
+    const Boundary whole = body.step(0, world);
+    own->adopt(*world, whole.obstacles[0]);
+    EXPECT_EQ(own->counts().builds, 0) << "there is nothing to adopt yet";
+    Answers(shirt, whole, x);
+    world->prepare_motion(whole.obstacles[0]);
+    ASSERT_EQ(world->counts().builds, 2);
+    own->adopt(*world, whole.obstacles[0]);
+    Boundary part = boundary_of({body.between(0.25, 0.5)});
+    const Answers expected = fresh_answers(part, x);
+    part.trees = own;
+    expect_same_bits(Answers(shirt, part, x), expected);
+    EXPECT_TRUE(own->motion(part.obstacles[0]));
+    EXPECT_EQ(own->counts().builds, 0);
+    EXPECT_EQ(world->counts().builds, 2);
+
+    const auto narrow = std::make_shared<ObstacleTrees>(ObstacleTreesSettings{0.2, 10});
+    narrow->adopt(*world, whole.obstacles[0]);
+    narrow->surface(whole.obstacles[0], StepEnd::start);
+    EXPECT_EQ(narrow->counts().builds, 1) << "made for another radius";
+}
+
 TEST(ObstacleTrees, ThreadsOfAQueryDoNotShow) {
     std::mt19937 random(3);
     const RoughBody body;

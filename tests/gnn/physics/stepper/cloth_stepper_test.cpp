@@ -459,6 +459,16 @@ TEST_F(Guard, OneHierarchyOfAnObstacleServesAStepAndItsParts) {
     EXPECT_LE(counts.motion_fits, parts);
 }
 
+TEST_F(Guard, PartsTakeOverWhatTheWorldHasBuilt) {
+    ClothStepper stepper(m_garment, guarded());
+    m_boundary.trees = std::make_shared<ObstacleTrees>();
+    m_boundary.obstacles = {as_mesh(plate(-0.03, 0.13))};
+    EXPECT_GT(stepper.step(m_boundary, dt, m_state).substeps, 1);
+    EXPECT_EQ(m_boundary.trees->counts().builds, 2);
+    EXPECT_EQ(stepper.trees().counts().builds, 0);
+    EXPECT_GT(stepper.trees().counts().surface_fits, 1);
+}
+
 TEST_F(Guard, WithoutASolverItIsRefused) {
     EXPECT_THROW(ClothStepper(m_garment, std::unique_ptr<StepSolver>()), ArgumentError);
 }
