@@ -115,7 +115,7 @@ std::string plots_html(const json& report) {
                           "of the same time step, each solver going on from its own states.") +
            per_frame_html(report, "/series/fine_rmse_mm",
                           "Error to the fine reference, frame by frame", "error (mm)",
-                          "The same to the reference of 1/240 s, which is nearer to the truth.") +
+                          "The same to the reference in steps of 1/240 s.") +
            per_frame_html(report, "/one_step/gap_per_frame",
                           "Energy gap of single steps, frame by frame", "gap",
                           "Each step starts in the reference's state: 0 is converged, 1 no better "

@@ -108,7 +108,8 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "time is short, and XPBD lacks what you need: limbs, `maxMs`, reactions through anchors. "
          "As `small`, with three iterations and steps that are never cut"},
         {"reference",
-         "the yardstick: each step is solved to convergence. It is no nearer to the truth than "
+         "the yardstick: each step is solved to convergence. It is no nearer to the fine solution "
+         "than "
          "quasi-newton-bdf2, and its steps are never cut"}};
     MarkdownTable table;
     table.heading = {"solver",

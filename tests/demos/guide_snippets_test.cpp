@@ -60,6 +60,15 @@ TEST_F(GuideSnippets, Limbs) {
     world->removeRigidBody(&person);
 }
 
+TEST_F(GuideSnippets, PointsOfAnAnimationSystemOfYourOwn) {
+    const std::vector<float> skinned = {0, 1, 2, 3, 4, 5};
+    const int vertex_count = 2;
+    cloth::Points x0(vertex_count, 3);
+    for (int i = 0; i < vertex_count; ++i)
+        x0.row(i) << skinned[3 * i], skinned[3 * i + 1], skinned[3 * i + 2];
+    EXPECT_EQ(x0, (cloth::Points(2, 3) << 0, 1, 2, 3, 4, 5).finished());
+}
+
 TEST_F(GuideSnippets, Fabric) {
     // Throws an error that says what is wrong with the body; without attach(), status() says it.
     solver.attach(body, cloth::Fabric::real_cotton());
