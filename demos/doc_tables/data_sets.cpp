@@ -46,7 +46,7 @@ DataSet real_time(const std::string& garment) {
             "build/release/demos/speed_error --garment " + garment +
                 " --rate 60 --frames 60 --relative-to xpbd-20 --solvers"
                 " bullet-fine,xpbd-20,quasi-newton-3,quasi-newton-10,quasi-newton,quasi-newton@16,"
-                "quasi-newton@8 --out OUT",
+                "quasi-newton@8,quasi-newton-50x4,quasi-newton-50x16 --out OUT",
             "speed_error.json",
             {},
             {}};

@@ -45,6 +45,8 @@ void add(const StepReport& part, StepReport& report) {
     add_times(part.times, report.times);
 }
 
+constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
+
 /// What a part like this takes (ms) with as many iterations as it needs to be worth its while:
 /// cloth that is cut into parts of one or two tears, and is farther off than in one step of as
 /// many.
@@ -253,7 +255,9 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     if (searched) search(boundary, m_start.x, m_corrected.x, corrected);
     add_times(corrected.times, report.times);
     report.iterations += corrected.iterations;
-    if (corrected.tunnelled || corrected.max_entry > std::max(report.max_entry, m_guard.max_entry))
+    if (corrected.tunnelled ||
+        corrected.max_entry > std::max(report.max_entry, m_guard.max_entry) ||
+        corrected.max_penetration > std::max(report.max_penetration, kVisible))
         return;
     corrected.iterations = report.iterations;
     corrected.times = report.times;
