@@ -70,6 +70,19 @@ void check(const std::vector<Series>& series, const PlotSettings& settings) {
     }
 }
 
+constexpr int kLegendLine = 19;
+
+int top_of(const PlotSettings& settings) {
+    return settings.title.empty() ? 14 : 34;
+}
+
+/// Where the last line of the legend ends.
+int legend_end(const std::vector<Series>& series, const PlotSettings& settings) {
+    const auto named = std::count_if(series.begin(), series.end(),
+                                     [](const Series& s) { return !s.name.empty(); });
+    return top_of(settings) + kLegendLine * static_cast<int>(named);
+}
+
 double legend_width(std::size_t letters) {
     return letters == 0 ? 20.0 : std::max(165.0, 46.0 + kLetter * static_cast<double>(letters));
 }
@@ -93,7 +106,7 @@ Diagram diagram_of(const std::vector<Series>& series, const PlotSettings& settin
     diagram.x = axis_for(xs, settings.x_scale, 8);
     diagram.y = axis_for(ys, settings.y_scale, settings.height / 50);
     diagram.frame = {62.0, settings.width - legend_width(legend),
-                     settings.title.empty() ? 14.0 : 34.0, settings.height - 46.0};
+                     static_cast<double>(top_of(settings)), settings.height - 46.0};
     // Measured values end where they end, not at the next tick.
     if (settings.x_scale == Scale::linear && !xs.empty()) {
         const auto [low, high] = std::minmax_element(xs.begin(), xs.end());
@@ -223,7 +236,7 @@ std::string legend_svg(const Frame& f, const std::vector<Series>& series,
                                 attribute("stroke", colours[i]) + attribute("stroke-width", "3") +
                                     (series[i].dashed ? attribute("stroke-dasharray", "6 4") : ""));
         svg += text_element(x + 26, y, series[i].name, "start");
-        y += 19;
+        y += kLegendLine;
     }
     return svg;
 }
@@ -262,8 +275,10 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-std::string plot_svg(const std::vector<Series>& series, const PlotSettings& settings) {
-    check(series, settings);
+std::string plot_svg(const std::vector<Series>& series, const PlotSettings& asked) {
+    check(series, asked);
+    PlotSettings settings = asked;
+    settings.height = std::max(asked.height, legend_end(series, asked));
     const Diagram diagram = diagram_of(series, settings);
     std::vector<std::string> colours;
     for (const Series& s : series)

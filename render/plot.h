@@ -28,7 +28,7 @@ struct PlotSettings {
     std::string x_label = {};  ///< with the unit: "time (s)"
     std::string y_label = {};
     int width = 760;   ///< (pixels), 200 to 4000
-    int height = 320;  ///< (pixels), 120 to 4000
+    int height = 320;  ///< (pixels), 120 to 4000; the plot is higher where its legend is
     Scale x_scale = Scale::linear;
     Scale y_scale = Scale::linear;
     bool y_from_zero = true;  ///< a linear y axis includes 0

@@ -84,6 +84,14 @@ std::vector<DataSet> data_sets() {
          {},
          {{"tshirt_soft_fine_rmse.svg", figures + "speed_error_tshirt_soft_fine_rmse.svg"},
           {"tshirt_soft_gap.svg", figures + "speed_error_tshirt_soft_gap.svg"}}},
+        {"stiff",
+         figures + "stiff.json",
+         "build/release/demos/speed_error --scene all --fabric real --frames 30 --relative-to "
+         "xpbd-40 --solvers bullet-fine,xpbd-40,xpbd-100,quasi-newton-10,quasi-newton,"
+         "quasi-newton-bdf2 --out OUT",
+         "speed_error.json",
+         {},
+         {}},
         real_time("tshirt"),
         real_time("tshirt_1000"),
         {"max_ms",

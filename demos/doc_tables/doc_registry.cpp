@@ -24,6 +24,7 @@ const Registry& doc_registry() {
         {{"which_solver", {"speed_error"}, which_solver_table},
          {"whole_motion", {"whole_motion"}, whole_motion_table},
          {"speed_error", {"speed_error"}, speed_error_table},
+         {"stiff", {"stiff"}, stiff_table},
          {"real_time", {"real_time_tshirt", "real_time_tshirt_1000"}, real_time_table},
          {"max_ms", {"max_ms"}, real_time_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},

@@ -109,8 +109,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "As `small`, with three iterations and steps that are never cut"},
         {"reference",
          "the yardstick: each step is solved to convergence. It is no nearer to the fine solution "
-         "than "
-         "quasi-newton-bdf2, and its steps are never cut"}};
+         "than quasi-newton-bdf2, and its steps are never cut"}};
     MarkdownTable table;
     table.heading = {"solver",
                      "use it when",
@@ -127,6 +126,31 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
             cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
                             significant(row.number("/ms_p95"), 2));
             cells.push_back(millimetres(row.number("/fine_rmse_mm")));
+        }
+        table.rows.push_back(cells);
+    }
+    return table;
+}
+
+MarkdownTable stiff_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver",
+                     "T-shirt: ms per step, median / 95 %",
+                     "distance (mm)",
+                     "sheet on a sphere: ms",
+                     "mm",
+                     "hanging sheet: ms",
+                     "mm"};
+    for (const DataRow& first : files.at(0).rows("rows")) {
+        if (first.text("/scene") != scenes[0]) continue;
+        std::vector<std::string> cells = {first.text("/solver")};
+        for (const char* scene : scenes) {
+            const DataRow row = files.at(0).row(
+                "rows", {{"scene", scene}, {"fabric", "real"}, {"solver", cells[0]}});
+            cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
+                            significant(row.number("/ms_p95"), 2));
+            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
+                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
         }
         table.rows.push_back(cells);
     }

@@ -8,6 +8,8 @@ namespace cloth {
 MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
 MarkdownTable speed_error_table(const std::vector<DataFile>& files);
 MarkdownTable which_solver_table(const std::vector<DataFile>& files);
+/// Cotton as it is measured.
+MarkdownTable stiff_table(const std::vector<DataFile>& files);
 /// Median, 95 % and longest of the steps; a garment in each file, the same solvers in each.
 MarkdownTable real_time_table(const std::vector<DataFile>& files);
 MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files);

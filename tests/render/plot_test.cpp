@@ -151,6 +151,24 @@ TEST(Plot, LegendNamesEverySeriesInItsColour) {
     EXPECT_EQ(category_colour(8), category_colour(0));
 }
 
+TEST(Plot, ALongLegendMakesItHigher) {
+    const auto height_of = [](int names) {
+        std::vector<Series> series(static_cast<std::size_t>(names), {"solver", {1, 2}, {3, 4}});
+        const std::string svg = plot_svg(series, {});
+        double lowest = 0.0;
+        for (std::size_t at = svg.find(">solver<"); at != std::string::npos;
+             at = svg.find(">solver<", at + 1)) {
+            const std::size_t y = svg.rfind(" y=\"", at) + 4;
+            lowest = std::max(lowest, std::stod(svg.substr(y)));
+        }
+        const double height = std::stod(svg.substr(svg.find(" height=\"") + 9));
+        EXPECT_LT(lowest, height - 4) << names;
+        return height;
+    };
+    EXPECT_EQ(height_of(3), 320);
+    EXPECT_GT(height_of(40), 700);
+}
+
 TEST(Plot, ScatterHasOneCircleAndTextPerPoint) {
     Series series{"", {1, 10, 100}, {5, 6, 7}, SeriesStyle::points, "", false, {"a", "b", "c"}};
     PlotSettings settings;
