@@ -16,6 +16,16 @@ std::string millimetres(double value) {
     return decimals(value, value < 9.95 ? 1 : 0);
 }
 
+/// To the fine solution, of a row of speed_error.json.
+std::string distance_of(const DataRow& row) {
+    return millimetres(row.number("/fine_rmse_mm")) +
+           (row.is_null("/first_failed_frame") ? "" : " (fails)");
+}
+
+std::string median_and_p95(const DataRow& row) {
+    return significant(row.number("/ms_median"), 2) + " / " + significant(row.number("/ms_p95"), 2);
+}
+
 /// Rows of speed_error.json with soft cotton.
 DataRow soft_row(const DataFile& file, const std::string& scene, const std::string& solver) {
     return file.row("rows", {{"scene", scene}, {"fabric", "soft"}, {"solver", solver}});
@@ -90,8 +100,7 @@ MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
             const DataRow row = soft_row(files.at(0), scene, solver);
             cells.push_back(significant(row.number("/ms_ratio"), 2));
             cells.push_back(significant(row.number("/gap_median"), 2));
-            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
-                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
+            cells.push_back(distance_of(row));
         }
         table.rows.push_back(cells);
     }
@@ -109,8 +118,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "As `small`, with three iterations and steps that are never cut"},
         {"reference",
          "the yardstick: each step is solved to convergence, and never cut. Its steps are as long "
-         "as "
-         "the others', so it is hardly nearer to the fine solution"}};
+         "as the others', so it is hardly nearer to the fine solution"}};
     MarkdownTable table;
     table.heading = {"solver",
                      "use it when",
@@ -124,9 +132,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
         std::vector<std::string> cells = {solver, when};
         for (const char* scene : scenes) {
             const DataRow row = soft_row(files.at(0), scene, solver);
-            cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
-                            significant(row.number("/ms_p95"), 2));
-            cells.push_back(millimetres(row.number("/fine_rmse_mm")));
+            cells.insert(cells.end(), {median_and_p95(row), distance_of(row)});
         }
         table.rows.push_back(cells);
     }
@@ -148,10 +154,7 @@ MarkdownTable stiff_table(const std::vector<DataFile>& files) {
         for (const char* scene : scenes) {
             const DataRow row = files.at(0).row(
                 "rows", {{"scene", scene}, {"fabric", "real"}, {"solver", cells[0]}});
-            cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
-                            significant(row.number("/ms_p95"), 2));
-            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
-                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
+            cells.insert(cells.end(), {median_and_p95(row), distance_of(row)});
         }
         table.rows.push_back(cells);
     }
@@ -171,11 +174,9 @@ MarkdownTable real_time_table(const std::vector<DataFile>& files) {
         std::vector<std::string> cells = {solver};
         for (const DataFile& file : files) {
             const DataRow row = file.row("rows", {{"solver", solver}});
-            cells.push_back(significant(row.number("/ms_median"), 2) + " / " +
-                            significant(row.number("/ms_p95"), 2) + " / " +
+            cells.push_back(median_and_p95(row) + " / " +
                             significant(row.number("/ms_longest"), 2));
-            cells.push_back(millimetres(row.number("/fine_rmse_mm")) +
-                            (row.is_null("/first_failed_frame") ? "" : " (fails)"));
+            cells.push_back(distance_of(row));
         }
         table.rows.push_back(cells);
     }
