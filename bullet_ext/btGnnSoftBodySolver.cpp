@@ -364,10 +364,7 @@ void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
         m_status.shortenedSteps += report.out_of_time;
         m_status.maxIgnoredDepth = std::max(m_status.maxIgnoredDepth, report.max_ignored_depth);
         m_status.nodesInIgnoredLimbs += report.vertices_in_ignored_limbs;
-        m_status.times.proximity += report.times.proximity;
-        m_status.times.features += report.times.features;
-        m_status.times.solve += report.times.solve;
-        m_status.times.contact += report.times.contact;
+        m_status.times += report.times;
         entry.failures = result.failed_steps > 0 ? entry.failures + result.failed_steps : 0;
     }
     m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());

@@ -25,13 +25,6 @@ btVector3 restored(const float* written) {
     return {written[0], written[1], written[2]};
 }
 
-void add(const StageTimes& times, StageTimes& sum) {
-    sum.proximity += times.proximity;
-    sum.features += times.features;
-    sum.solve += times.solve;
-    sum.contact += times.contact;
-}
-
 struct Box {
     Vec3 low, high;
 };
@@ -284,7 +277,7 @@ bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
         if (m_deadline.is_set()) m_stepper->set_max_ms(std::max(1e-3, m_deadline.left()));
         m_report = m_stepper->step(boundary, m_cloth_step.length, to);
         m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
-        add(m_report.times, times);
+        times += m_report.times;
     } while (hang && m_anchored.tryAgain(*m_stepper, from, boundary, to, m_report));
     m_report.times = times;
     if (hang && m_report.finite) m_anchored.place(to);

@@ -16,6 +16,13 @@ struct StageTimes {
     double solve = 0.0;      ///< network evaluation and solver iterations
     double contact = 0.0;    ///< contact projection, and the search for tunnelling
     double total() const { return proximity + features + solve + contact; }
+    StageTimes& operator+=(const StageTimes& other) {
+        proximity += other.proximity;
+        features += other.features;
+        solve += other.solve;
+        contact += other.contact;
+        return *this;
+    }
 };
 
 /// What happened inside one step; the per-frame path reports, it does not throw.

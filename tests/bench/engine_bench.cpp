@@ -180,10 +180,7 @@ void frame(benchmark::State& state, const ModelConfig& config, int refine) {
     for (auto _ : state) {
         ClothState copy = moment().state;
         const StepReport step = stepper.step(moment().boundary, config.dt, copy);
-        times.proximity += step.times.proximity;
-        times.features += step.times.features;
-        times.solve += step.times.solve;
-        times.contact += step.times.contact;
+        times += step.times;
     }
     const auto mean = [](double total) {
         return benchmark::Counter(total, benchmark::Counter::kAvgIterations);

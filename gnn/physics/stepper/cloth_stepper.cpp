@@ -22,13 +22,6 @@ void check(const GuardSettings& settings) {
     check(settings.iterations, "GuardSettings.iterations");
 }
 
-void add_times(const StageTimes& part, StageTimes& times) {
-    times.proximity += part.proximity;
-    times.features += part.features;
-    times.solve += part.solve;
-    times.contact += part.contact;
-}
-
 void add(const StepReport& part, StepReport& report) {
     report.finite = part.finite;
     report.iterations += part.iterations;
@@ -42,7 +35,7 @@ void add(const StepReport& part, StepReport& report) {
         report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
     report.tangles = part.tangles;
     report.first_tangle = part.first_tangle;
-    add_times(part.times, report.times);
+    report.times += part.times;
 }
 
 constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
@@ -253,7 +246,7 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
                                              limits, m_corrected);
     if (!corrected.finite) return;
     if (searched) search(boundary, m_start.x, m_corrected.x, corrected);
-    add_times(corrected.times, report.times);
+    report.times += corrected.times;
     report.iterations += corrected.iterations;
     if (corrected.tunnelled ||
         corrected.max_entry > std::max(report.max_entry, m_guard.max_entry) ||
