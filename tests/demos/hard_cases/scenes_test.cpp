@@ -173,7 +173,8 @@ TEST(HardScenes, HandsDoNotGoThroughTheShirt) {
     } catch (const LoadError& error) {
         GTEST_SKIP() << error.what();
     }
-    EXPECT_GE(frames_tunnelled(hard, 1.0), 5) << "the scene is no test";
+    // Corrected steps mend most of what goes through.
+    EXPECT_GE(frames_tunnelled(hard, 1.0), 3) << "the scene is no test";
     EXPECT_LE(frames_tunnelled(hard, GuardSettings().watch_motion), 1);
 }
 
