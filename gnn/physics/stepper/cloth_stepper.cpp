@@ -135,13 +135,16 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
     const int foreseen = affordable(safe, m_substeps);
     const bool may_repeat = foreseen < m_guard.max_substeps;
     if (may_repeat) m_before = state;
-    StepReport report = take(foreseen, boundary, dt, motion, state);
+    StepReport report = foreseen == 1
+                            ? take_whole(boundary, dt, motion, state)
+                            : take_parts(foreseen, boundary, dt, Corrections::allowed, state);
     Lag lag = std::exchange(m_next_lag, {});
     const int asked = may_repeat ? substeps_after(report, motion) : foreseen;
     const int finer = affordable(asked, report.finite ? foreseen : std::min(asked, 2));
     const bool shortened = foreseen < safe || finer < asked;
     if (finer > foreseen) {
-        const StepReport repeated = take(finer, boundary, dt, motion, m_before);
+        // What was corrected in vain, or is cut more finely now, is not worth more corrections.
+        const StepReport repeated = take_parts(finer, boundary, dt, Corrections::none, m_before);
         if (repeated.finite || !report.finite) {
             if (repeated.finite) std::swap(state, m_before);
             report = repeated;
@@ -151,12 +154,6 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
     report.out_of_time = report.out_of_time || shortened;
     if (report.finite && report.substeps > 1) std::swap(m_lag, lag);
     return report;
-}
-
-StepReport ClothStepper::take(int substeps, const Boundary& boundary, double dt, double motion,
-                              ClothState& state) {
-    return substeps == 1 ? take_whole(boundary, dt, motion, state)
-                         : take_parts(substeps, boundary, dt, state);
 }
 
 StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double motion,
@@ -190,7 +187,7 @@ bool ClothStepper::is_made_for(double dt) const {
 }
 
 StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, double dt,
-                                    ClothState& state) {
+                                    Corrections corrections, ClothState& state) {
     StepReport report;
     report.converged = true;
     report.substeps = substeps;
@@ -210,7 +207,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
         if (k > 0) m_trees->begin_step();
         if (m_deadline.is_set())
             m_solver->set_deadline(Deadline::in(m_deadline.left() / (substeps - k)));
-        const StepReport part = take_part(m_part.take(k), dt / substeps, limits);
+        const StepReport part = take_part(m_part.take(k), dt / substeps, limits, corrections);
         add(part, report);
         if (!report.finite) return report;
         m_part_ms += least_ms(part, limits) / substeps;
@@ -226,13 +223,15 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
 }
 
 /// Advances m_state.
-StepReport ClothStepper::take_part(const Boundary& part, double dt, const IterationLimits& limits) {
+StepReport ClothStepper::take_part(const Boundary& part, double dt, const IterationLimits& limits,
+                                   Corrections corrections) {
     const double motion = is_watched() ? relative_motion(*m_garment, part, dt, m_state) : 0.0;
     const bool search_it = motion > m_guard.watch_motion;
     if (is_watched()) m_start = m_state;
     StepReport report = m_solver->part(part, dt, limits, m_state);
     if (search_it && report.finite) search(part, m_start.x, m_state.x, report);
-    if (is_watched() && !m_deadline.is_set()) correct(part, dt, limits, search_it, m_state, report);
+    if (is_watched() && !m_deadline.is_set() && corrections == Corrections::allowed)
+        correct(part, dt, limits, search_it, m_state, report);
     return report;
 }
 

@@ -15,7 +15,7 @@ namespace cloth {
 ///
 /// A step that went past a surface, or through a solid, is taken on from where it ended, with the
 /// contacts that hold it there. That costs about half a step more. If it still went through, it is
-/// taken again in parts.
+/// taken again in parts, which are not corrected.
 struct GuardSettings {
     bool limbs = true;  ///< limbs of a body that pass through each other are told apart, see
                         ///< LimbOverlap
@@ -139,15 +139,17 @@ class ClothStepper : public Stepper {
         Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
 
+    enum class Corrections { none, allowed };  ///< of parts of a step
+
     bool is_made_for(double dt) const;
     int affordable(int substeps, int least) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
-    StepReport take(int substeps, const Boundary& boundary, double dt, double motion,
-                    ClothState& state);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
-    StepReport take_parts(int substeps, const Boundary& boundary, double dt, ClothState& state);
-    StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits);
+    StepReport take_parts(int substeps, const Boundary& boundary, double dt,
+                          Corrections corrections, ClothState& state);
+    StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits,
+                         Corrections corrections);
     void correct(const Boundary& boundary, double dt, const IterationLimits& limits, bool searched,
                  ClothState& state, StepReport& report);
     void search(const Boundary& boundary, const Points& x0, const Points& x1, StepReport& report);
