@@ -43,10 +43,13 @@ struct IgnoredDepth {
 /// numbers only. What it decides depends on the steps before.
 class LimbOverlap {
  public:
-    /// @param trees  see Proximity
+    /// @param trees     see Proximity
+    /// @param searches  asked for the vertices' own limbs: of whoever asks for their nearest points
+    ///                  anyway, so that few are searched for twice. Null: its own
     /// @throws ArgumentError if a setting is out of range
     explicit LimbOverlap(const LimbOverlapSettings& settings = {},
-                         const std::shared_ptr<ObstacleTrees>& trees = nullptr);
+                         const std::shared_ptr<ObstacleTrees>& trees = nullptr,
+                         Proximity* searches = nullptr);
 
     /// The boundary with the limbs that are ignored in the step that begins added to
     /// Boundary::ignored_limbs; itself, if no vertex ignores any. It is valid until the next call.
@@ -72,6 +75,7 @@ class LimbOverlap {
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_covered();
+    void find_own_skin(const Boundary& boundary, const Points& x);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
     bool ignores_nothing() const;
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
@@ -82,6 +86,7 @@ class LimbOverlap {
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
     Proximity m_own_proximity;            ///< of own limbs: searches begin at the faces found last
+    Proximity* m_searches;                ///< used instead; or null
     std::vector<char> m_has_limbs;        ///< each obstacle of the last step
     std::vector<Limbs> m_known, m_found;  ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them

@@ -110,7 +110,7 @@ SurfaceHit MeshSurface::on_face(const FaceHit& hit, const Vec3& away) const {
     const Vec3 b = x.row((*m_faces)(hit.face, 1));
     const Vec3 c = x.row((*m_faces)(hit.face, 2));
     const bool inside = (b - a).cross(c - a).dot(away) < 0.0;
-    return {hit.face, hit.barycentric, signed_root(hit.squared, inside)};
+    return {hit.face, hit.barycentric, signed_root(hit.squared, inside), m_tree.limb(hit.face)};
 }
 
 /// Angle (rad) of the corner `pivot` between the corners before and after it.
@@ -144,10 +144,12 @@ SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away,
     int front = -1, back = -1;  // the faces most squarely before and behind the point
     double front_height = 0.0, back_height = 0.0, weighted = 0.0;
     bool at_border = false;  // of a limb that is passed over
+    LimbSet limbs = 0;
     for (const int* face = m_vertex_faces->begin(ends[0]); face != m_vertex_faces->end(ends[0]);
          ++face) {
         const int pivot = corner_at(*face, ends[0]);
         if (pivot < 0 || (ends[1] >= 0 && corner_at(*face, ends[1]) < 0)) continue;
+        limbs |= m_tree.limb(*face);
         std::array<Vec3, 3> corners;
         for (int k = 0; k < 3; ++k)
             corners[size_t(k)] = m_tree.vertices().row((*m_faces)(*face, k));
@@ -164,8 +166,11 @@ SurfaceHit MeshSurface::on_edge_or_vertex(const FaceHit& hit, const Vec3& away,
     }
 
     const bool inside = weighted < 0.0;
-    if (at_border && inside) return {};  // in the limb that is passed over
-    SurfaceHit result{inside ? back : front, Vec3::Zero(), signed_root(hit.squared, inside)};
+    SurfaceHit result;
+    result.limbs = limbs;
+    if (at_border && inside) return result;  // none: in the limb that is passed over
+    result.face = inside ? back : front;
+    result.distance = signed_root(hit.squared, inside);
     for (const int end : {0, 1})
         if (ends[end] >= 0) result.barycentric[corner_at(result.face, ends[end])] = weights[end];
     return result;

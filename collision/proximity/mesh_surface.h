@@ -13,6 +13,7 @@ struct SurfaceHit {
     int face = -1;                    ///< -1: none within the radius
     Vec3 barycentric = Vec3::Zero();  ///< of the closest point in that face
     double distance = 0.0;            ///< signed distance (m), negative inside
+    LimbSet limbs = 0;  ///< of all faces that share the closest feature (face, edge or vertex)
 };
 
 /// Which faces meet at each vertex. Vertices of open edges that coincide (to the bit) in the first

@@ -70,9 +70,9 @@ struct Cover {
 /// built when the `faces` pointer of a mesh is first seen, and refitted afterwards. The closest
 /// face of the previous query of the same vertex bounds the next one. A point that was asked last
 /// for the same surface, as at the start of a step after the end of the one before, is not searched
-/// for again. A mesh that no query has shown for a while is forgotten. Results depend on the
-/// arguments alone: not on earlier queries, nor on whose hierarchies they are, nor on the number of
-/// threads.
+/// for again, unless a limb is passed over to which what was found belongs. A mesh that no query
+/// has shown for a while is forgotten. Results depend on the arguments alone: not on earlier
+/// queries, nor on whose hierarchies they are, nor on the number of threads.
 ///
 /// Of several obstacles, the smallest signed distance wins. A point that is deeper inside a mesh
 /// than the radius has no contact, like one far outside; in a primitive every depth is seen. Points
@@ -111,11 +111,12 @@ class Proximity {
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored = 0);
 
-    /// The same for several rows, on several threads.
+    /// The same for several rows, on several threads, at either end of the step, whatever was asked
+    /// before.
     /// @param ignored  |V|: limbs that do not count for each row
     /// @param covers   |rows|: what lies over each of `rows`
     void cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
-                    StepEnd chosen_at, const std::vector<LimbSet>& ignored,
+                    const Boundary& boundary, StepEnd end, const std::vector<LimbSet>& ignored,
                     std::vector<std::optional<Cover>>& covers);
 
     /// Meshes that are remembered at present.

@@ -80,7 +80,7 @@ ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> s
       m_substeps(substeps),
       m_solver(std::move(solver)),
       m_trees(std::move(trees)),
-      m_limbs({}, m_trees),
+      m_limbs({}, m_trees, m_solver ? &m_solver->proximity() : nullptr),
       m_detector(garment, m_trees) {
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);

@@ -95,6 +95,7 @@ class StepSolver {
 
     /// Where the last whole step started (|V| x 3, m): the prediction, if there was one.
     const Points& start() const { return m_started; }
+    Proximity& proximity() { return m_proximity; }  ///< what nearest points are asked from
     const SelfContactProjection& self_contact() const { return m_self_contact; }  ///< last step's
 
  private:

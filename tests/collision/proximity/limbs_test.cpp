@@ -123,6 +123,36 @@ TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
     EXPECT_EQ(near.distance, all.distance) << "not beyond the settings' radius";
 }
 
+TEST(Limbs, WhatWasAskedBeforeChangesNoAnswer) {
+    std::mt19937 random(5);
+    int found = 0;
+    for (const TriMesh& mesh : {roughened(icosphere(2), 0.3, 2), triangle_soup(icosphere(2))}) {
+        const Boundary boundary = boundary_of({sliced(mesh, 5)});
+        Points x = random_points(random, 500, 1.3);
+        for (int i = 0; i < 100; ++i) x.row(i) = 1.1 * mesh.vertices.row(i);  // nearest to vertices
+        std::vector<int> rows(500);
+        std::iota(rows.begin(), rows.end(), 0);
+        Proximity asked({0.6, 0});
+        SurfaceContacts all, contacts;
+        asked.query(x, boundary, all);
+        std::vector<LimbSet> ignored(500, 0);
+        for (int round = 0; round < 8; ++round) {
+            for (LimbSet& limbs : ignored) limbs = round % 3 == 2 ? 0 : limbs | 1u << random() % 5;
+            const double radius = round % 2 == 0 ? 0.6 : 0.3;
+            contacts = all;
+            asked.query_rows(x, rows, boundary, contacts, StepEnd::start, {&ignored, radius});
+            Proximity fresh({0.6, 0});
+            SurfaceContacts expected = all;
+            fresh.query_rows(x, rows, boundary, expected, StepEnd::start, {&ignored, radius});
+            EXPECT_EQ(contacts.face, expected.face) << "round " << round;
+            EXPECT_EQ(contacts.distance, expected.distance) << "round " << round;
+            EXPECT_EQ(contacts.barycentric, expected.barycentric) << "round " << round;
+            for (const int face : contacts.face) found += face >= 0;
+        }
+    }
+    EXPECT_GT(found, 1000);
+}
+
 TEST(Limbs, TheBoundarySaysWhatVerticesIgnore) {
     const TriMesh mesh = icosphere(2);
     Boundary boundary = boundary_of({sliced(mesh, 2)});
@@ -180,7 +210,7 @@ TEST(Limbs, WhatCoversSeveralRowsIsWhatCoversEachForAnyNumberOfThreads) {
         SurfaceContacts contacts;
         proximity.query(balls.x, balls.boundary, contacts);
         std::vector<std::optional<Cover>> covers;
-        proximity.cover_rows(contacts, rows, StepEnd::start, ignored, covers);
+        proximity.cover_rows(contacts, rows, balls.boundary, StepEnd::start, ignored, covers);
         ASSERT_EQ(covers.size(), rows.size());
         int found = 0;
         for (size_t k = 0; k < rows.size(); ++k) {
