@@ -158,16 +158,40 @@ void SoftBodyStep::takeNodes() {
 void SoftBodyStep::takeWind() {
     if (!(m_body.m_cfg.kLF > 0) && !(m_body.m_cfg.kDG > 0)) return;
     const Points& start = m_cloth_step.valid ? m_cloth_step.to.v : m_shown.v;
-    std::vector<btVector3> velocities;
+    std::vector<btVector3> velocities, forces;
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         btSoftBody::Node& node = m_body.m_nodes[i];
         velocities.push_back(node.m_v);
+        forces.push_back(node.m_f);
         node.m_v = toBullet(Vec3(start.row(i) + static_cast<double>(node.m_im) * m_impulse.row(i)));
     }
     m_body.addVelocity(m_body.m_worldInfo->m_gravity * m_body.m_sst.sdt);
     m_body.applyForces();
+    keepWindFromGiving(forces);
     for (int i = 0; i < m_body.m_nodes.size(); ++i)
         m_body.m_nodes[i].m_v = velocities[static_cast<size_t>(i)];
+}
+
+/// Air slows down what moves through it, and turns it, but gives it no energy of motion relative to
+/// the air. Lift of finite steps does: it is taken for as much as gives none.
+/// @param before  forces on the nodes without wind (N)
+void SoftBodyStep::keepWindFromGiving(const std::vector<btVector3>& before) {
+    if (m_body.m_cfg.kPR != 0 || m_body.m_cfg.kVC != 0) return;  // these give, too
+    const Vec3 air = toVec3(m_body.getWindVelocity());
+    double work = 0.0, kinetic = 0.0;  // J: of the change times the velocity; of the change alone
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        const btSoftBody::Node& node = m_body.m_nodes[i];
+        if (!(node.m_im > 0) || !isFinite(node.m_f)) continue;
+        const Vec3 impulse = m_h * toVec3(node.m_f - before[static_cast<size_t>(i)]);
+        work += impulse.dot(toVec3(node.m_v) - air);
+        kinetic += 0.5 * static_cast<double>(node.m_im) * impulse.squaredNorm();
+    }
+    if (!(work + kinetic > 0.0)) return;
+    const auto kept = static_cast<btScalar>(std::max(0.0, -work / kinetic));
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) {
+        btVector3& force = m_body.m_nodes[i].m_f;
+        force = before[static_cast<size_t>(i)] + kept * (force - before[static_cast<size_t>(i)]);
+    }
 }
 
 void SoftBodyStep::takeForces() {

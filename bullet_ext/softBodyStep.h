@@ -74,6 +74,7 @@ class SoftBodyStep {
     void takeConstants();
     void takeNodes();
     void takeWind();
+    void keepWindFromGiving(const std::vector<btVector3>& before);
     void takeForces();
     void takePins();
     void followAnchors();
