@@ -142,11 +142,31 @@ void putBack(const SlidingStep& step, const Slider& slider) {
     if (now && then && *then >= std::min(*now, kRubbed)) step.to.x.row(slider.node) = back;
 }
 
+double motionOf(const SlidingStep& step) {
+    return 0.5 * step.garment.masses().dot(step.to.v.rowwise().squaredNorm());
+}
+
+/// Cloth that lands in a long step is stopped in part: taken back all the way, that would stretch
+/// the rest by more than the motion which friction took.
+/// @param x      positions before any was taken back (|V| x 3, m)
+/// @param taken  energy of motion (J)
+void limitStretch(const SlidingStep& step, const Points& x, double taken) {
+    const std::optional<double> before = step.stepper.internal_energy(x);
+    if (!before || x == step.to.x) return;
+    const Points back = step.to.x - x;
+    for (const double part : {1.0, 0.5, 0.25, 0.0}) {
+        step.to.x = x + part * back;
+        if (step.stepper.internal_energy(step.to.x).value_or(0.0) - *before <= taken) return;
+    }
+}
+
 }  // namespace
 
 void applySlidingFriction(btSoftBody& body, const SlidingStep& step) {
     if (step.solids.empty() || !(body.m_cfg.kDF > 0)) return;
     const std::vector<Slider> sliders = findSliders(body, step);
+    const double motion = motionOf(step);
+    const Points x = step.to.x;
     for (const SlidingSolid& solid : step.solids) {
         const double part = solid.near.body ? 1.0 / (1.0 + recoil(sliders, solid, step.to.x)) : 1.0;
         for (const Slider& slider : sliders) {
@@ -157,6 +177,7 @@ void applySlidingFriction(btSoftBody& body, const SlidingStep& step) {
             if (!solid.near.body && slider.brake.holds) putBack(step, slider);
         }
     }
+    limitStretch(step, x, motion - motionOf(step));
 }
 
 }  // namespace cloth

@@ -37,8 +37,9 @@ struct SlidingStep {
 /// what lies on a round solid is held by the middles of its edges.
 ///
 /// Dynamic bodies get the opposite impulses, which are smaller the lighter the body is, so that
-/// nothing is thrown back: momentum is kept, and energy is only lost. Animated meshes, which Bullet
-/// does not have, have Coulomb's friction alone.
+/// nothing is thrown back: momentum is kept, and energy is only lost. Nodes that stick stay where
+/// they were, as far as that does not stretch the fabric by more energy than friction took.
+/// Animated meshes, which Bullet does not have, have Coulomb's friction alone.
 void applySlidingFriction(btSoftBody& body, const SlidingStep& step);
 
 }  // namespace cloth
