@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "demos/bullet_scenes/scene_run.h"
 #include "tests/demos/bullet_scenes/print_scene.h"
@@ -25,9 +26,13 @@ SceneRunSettings settings_of(const std::string& solver, int rate = 60) {
     return settings;
 }
 
-SceneResult run(const SceneRecipe& recipe, const std::string& solver, int rate = 60) {
+SceneResult run(const SceneRecipe& recipe, const SceneRunSettings& settings) {
     omp_set_num_threads(1);  // small sheets; other tests run beside this one
-    return run_scene(recipe, settings_of(solver, rate), SceneSolvers());
+    return run_scene(recipe, settings, SceneSolvers());
+}
+
+SceneResult run(const SceneRecipe& recipe, const std::string& solver, int rate = 60) {
+    return run(recipe, settings_of(solver, rate));
 }
 
 std::string name_of(const testing::TestParamInfo<SceneRecipe>& info) {
@@ -50,6 +55,29 @@ std::vector<SceneRecipe> sheets_without_heap() {
     all.erase(std::remove_if(all.begin(), all.end(), is_heap), all.end());
     return all;
 }
+
+/// Another solver or other steps than the tests above have.
+struct Stepping {
+    const char* name;
+    const char* solver;
+    int rate;         ///< steps per second; 0: random steps
+    double may_rise;  ///< of the energy scale
+};
+
+/// Steps of the network are of 1/30 s, and its iterations fewer than such stiff sheets need.
+const Stepping kSteppings[] = {{"physics_at_240_Hz", kPhysics, 240, 1e-3},
+                               {"physics_in_random_steps", kPhysics, 0, 1e-3},
+                               {"learned_at_60_Hz", "small", 60, 1e-2},
+                               {"learned_at_240_Hz", "small", 240, 1e-2},
+                               {"learned_in_random_steps", "small", 0, 1e-2}};
+
+SceneRunSettings settings_of(const std::string& solver, const Stepping& stepping) {
+    SceneRunSettings settings = settings_of(solver, std::max(stepping.rate, 60));
+    settings.steps.random = stepping.rate == 0;
+    return settings;
+}
+
+class DemoSteps : public testing::TestWithParam<std::tuple<SceneRecipe, Stepping>> {};
 
 class DemoSheets : public testing::TestWithParam<SceneRecipe> {};
 class DemoEnergy : public testing::TestWithParam<SceneRecipe> {};
@@ -113,6 +141,30 @@ TEST_P(DemoInside, IsAMillimetreAtMost) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, DemoInside, testing::ValuesIn(sheets()), name_of);
+
+// In steps that change, energy of what falls changes too, in Bullet as here: the velocity is that
+// of the end of a step. Stretch is that of the fabric at every rate, where Bullet's depends on it.
+TEST_P(DemoSteps, HoldAsTheOthersDo) {
+    const auto& [recipe, stepping] = GetParam();
+    const SceneRow ours = run(recipe, settings_of(stepping.solver, stepping)).row;
+    const SceneRow bullet = run(recipe, settings_of("bullet", stepping)).row;
+    const SceneRow usual = run(recipe, "bullet").row;
+    EXPECT_TRUE(ours.finite);
+    EXPECT_LT(ours.penetration_max_mm, 1.0);
+    EXPECT_LT(ours.stretch_p99, usual.stretch_p99 + 0.05);
+    EXPECT_LT(ours.stretch_max, usual.stretch_max + 0.05);
+    if (recipe.outside_work == OutsideWork::always) return;
+    const double bullets = stepping.rate == 0 ? bullet.energy_rise_j : 0.0;
+    EXPECT_LT(ours.energy_rise_j, stepping.may_rise * ours.energy_scale_j + bullets);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, DemoSteps,
+                         testing::Combine(testing::ValuesIn(sheets_without_heap()),
+                                          testing::ValuesIn(kSteppings)),
+                         [](const auto& info) {
+                             return std::string(std::get<0>(info.param).name) + "_" +
+                                    std::get<1>(info.param).name;
+                         });
 
 TEST_P(DemoClosedBodies, AreBulletsToTheBit) {
     const SceneResult bullet = run(GetParam(), "bullet"), ours = run(GetParam(), kPhysics);
