@@ -120,6 +120,14 @@ std::vector<DataSet> data_sets() {
          "bullet_scenes.json",
          {},
          {}},
+        {"bullet_demos",
+         figures + "bullet_demos.json",
+         "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene"
+         " Cloth,ClothAttach,CapsuleCollision,Collide3,Cutting1,SimpleCloth,Aero,Aero2"
+         " --solvers bullet,quasi-newton-3,small --reference none --no-videos --out OUT",
+         "bullet_scenes.json",
+         {},
+         {}},
         {"engine",
          figures + "engine_bench.json",
          benchmark_command("engine_bench"),

@@ -30,6 +30,7 @@ const Registry& doc_registry() {
          {"hard_cases", {"hard_cases"}, hard_cases_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},
+         {"bullet_demos", {"bullet_demos"}, bullet_demos_table},
          {"engine", {"engine"}, engine_table},
          {"bfloat16", {"engine"}, bfloat16_table},
          {"edge_block", {"engine"}, edge_block_table},

@@ -91,33 +91,74 @@ MarkdownTable motions_table(const std::vector<DataFile>& files) {
     return table;
 }
 
-MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files) {
-    const std::vector<DataRow> rows = files.at(0).rows("rows");
-    const std::vector<std::string> solvers = names_of(rows, "/solver");
-    std::string order;
-    for (const std::string& solver : solvers) order += (order.empty() ? "" : " / ") + solver;
-    MarkdownTable table;
-    table.heading = {"scene: " + order, "rest (mm)",   "energy (mm)",       "momentum",
-                     "inside (mm)",     "ms per step", "in the last second"};
-    for (const std::string& scene : names_of(rows, "/scene")) {
-        const auto cell = [&](const std::string& member, auto&& text) {
-            std::string cells, dashes;
-            for (const std::string& solver : solvers) {
-                const DataRow row = files.at(0).row("rows", {{"scene", scene}, {"solver", solver}});
-                cells += (cells.empty() ? "" : " / ") + text(row.number(member));
-                dashes += (dashes.empty() ? "" : " / ") + text(std::nan(""));
-            }
-            return cells == dashes ? text(std::nan("")) : cells;
-        };
-        const auto fixed = [](int digits) {
-            return [digits](double value) { return decimals(value, digits); };
-        };
-        const auto two = [](double value) { return significant(value, 2); };
-        table.rows.push_back({scene, cell("/rest_error_mm", fixed(0)),
-                              cell("/rest_energy_mm", fixed(1)), cell("/momentum_error", fixed(3)),
-                              cell("/penetration_max_mm", fixed(0)), cell("/ms_median", two),
-                              cell("/ms_median_last_second", two)});
+namespace {
+
+/// Cells that hold a figure of every solver, "–" where none has one.
+class SolverCells {
+ public:
+    explicit SolverCells(const DataFile& file)
+        : m_file(file), m_solvers(names_of(file.rows("rows"), "/solver")) {}
+
+    /// "scene: SOLVER / SOLVER"
+    std::string heading() const {
+        std::string order;
+        for (const std::string& solver : m_solvers) order += (order.empty() ? "" : " / ") + solver;
+        return "scene: " + order;
     }
+    std::vector<std::string> scenes() const { return names_of(m_file.rows("rows"), "/scene"); }
+
+    template <class Text>
+    std::string of(const std::string& scene, const std::string& member, const Text& text) const {
+        std::string cells, dashes;
+        for (const std::string& solver : m_solvers) {
+            const DataRow row = m_file.row("rows", {{"scene", scene}, {"solver", solver}});
+            cells += (cells.empty() ? "" : " / ") + text(row.number(member));
+            dashes += (dashes.empty() ? "" : " / ") + text(std::nan(""));
+        }
+        return cells == dashes ? text(std::nan("")) : cells;
+    }
+
+ private:
+    const DataFile& m_file;
+    std::vector<std::string> m_solvers;
+};
+
+auto fixed(int digits) {
+    return [digits](double value) { return decimals(value, digits); };
+}
+
+std::string two(double value) {
+    return significant(value, 2);
+}
+
+}  // namespace
+
+MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files) {
+    const SolverCells cells(files.at(0));
+    MarkdownTable table;
+    table.heading = {cells.heading(), "rest (mm)",   "energy (mm)",       "momentum",
+                     "inside (mm)",   "ms per step", "in the last second"};
+    for (const std::string& scene : cells.scenes())
+        table.rows.push_back({scene, cells.of(scene, "/rest_error_mm", fixed(0)),
+                              cells.of(scene, "/rest_energy_mm", fixed(1)),
+                              cells.of(scene, "/momentum_error", fixed(3)),
+                              cells.of(scene, "/penetration_max_mm", fixed(0)),
+                              cells.of(scene, "/ms_median", two),
+                              cells.of(scene, "/ms_median_last_second", two)});
+    return table;
+}
+
+MarkdownTable bullet_demos_table(const std::vector<DataFile>& files) {
+    const SolverCells cells(files.at(0));
+    MarkdownTable table;
+    table.heading = {cells.heading(), "energy made (J)",    "stretch: 99 %", "longest",
+                     "inside (mm)",   "fastest node (m/s)", "ms per step"};
+    for (const std::string& scene : cells.scenes())
+        table.rows.push_back(
+            {scene, cells.of(scene, "/energy_rise_j", two),
+             cells.of(scene, "/stretch_p99", fixed(2)), cells.of(scene, "/stretch_max", fixed(2)),
+             cells.of(scene, "/penetration_max_mm", fixed(0)),
+             cells.of(scene, "/node_speed_max", fixed(0)), cells.of(scene, "/ms_median", two)});
     return table;
 }
 

@@ -9,7 +9,8 @@ MarkdownTable hard_cases_table(const std::vector<DataFile>& files);
 /// @param files  with limbs, and as one surface
 MarkdownTable motions_table(const std::vector<DataFile>& files);
 
-/// Report of `bullet_scenes`.
+/// Reports of `bullet_scenes`: scenes of our own, and those of Bullet's demos.
 MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files);
+MarkdownTable bullet_demos_table(const std::vector<DataFile>& files);
 
 }  // namespace cloth
