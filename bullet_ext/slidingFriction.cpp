@@ -147,16 +147,20 @@ double motionOf(const SlidingStep& step) {
 }
 
 /// Cloth that lands in a long step is stopped in part: taken back all the way, that would stretch
-/// the rest by more than the motion which friction took.
+/// the rest by more than the motion which friction took. Cloth that rests has the energy of the
+/// start of the step again.
 /// @param x      positions before any was taken back (|V| x 3, m)
 /// @param taken  energy of motion (J)
 void limitStretch(const SlidingStep& step, const Points& x, double taken) {
-    const std::optional<double> before = step.stepper.internal_energy(x);
-    if (!before || x == step.to.x) return;
+    if (x == step.to.x) return;
+    const auto energy = [&](const Points& at) {
+        return step.stepper.internal_energy(at).value_or(0.0);
+    };
+    const double most = std::max(energy(step.from.x), energy(x)) + taken;
     const Points back = step.to.x - x;
     for (const double part : {1.0, 0.5, 0.25, 0.0}) {
         step.to.x = x + part * back;
-        if (step.stepper.internal_energy(step.to.x).value_or(0.0) - *before <= taken) return;
+        if (energy(step.to.x) <= most) return;
     }
 }
 
