@@ -286,8 +286,8 @@ TEST(GnnSolver, WindPushesClothAsMuchAsWithBulletsSolver) {
     EXPECT_NEAR(cloth[0]->m_nodes[12].m_v.y(), expected, 0.01 * expected);
 }
 
-// Air takes motion, and turns it, but gives none. Bullet's lift in steps of finite length gives some:
-// 0.08 J here. What remains is that gravity and air take turns.
+// Air takes motion, and turns it, but gives none. Bullet's lift in steps of finite length gives
+// some: 0.08 J here. What remains is that gravity and air take turns.
 TEST(GnnSolver, StillAirGivesNoEnergy) {
     btGnnSoftBodySolver solver(free_fall());
     World world(&solver);
