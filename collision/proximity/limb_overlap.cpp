@@ -178,26 +178,23 @@ void LimbOverlap::ignore_covered() {
 }
 
 /// Of the vertices' own limbs, into m_near_own.
-void LimbOverlap::find_own_skin(const Boundary& boundary, const Points& x) {
+void LimbOverlap::find_own_skin(const Boundary& boundary, const Points& x, StepEnd end) {
     m_rows.clear();
     for (size_t i = 0; i < m_own.size(); ++i) {
         m_without[i] = ~m_own[i];
         if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
     }
-    (m_searches ? *m_searches : m_own_proximity)
-        .query_rows(x, m_rows, boundary, m_near_own, StepEnd::start,
-                    {&m_without, m_settings.reach});
+    // Those of the end are nobody else's: the step has not been taken yet.
+    Proximity& searches = m_searches && end == StepEnd::start ? *m_searches : m_own_proximity;
+    searches.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
 }
 
-/// Lets vertices that are inside a joined limb ignore it where it lies over their own limb's skin:
-/// over what is nearest to them at the start of the step, and over the same at its end.
+/// Lets vertices that are inside a joined limb ignore it where it lies over their own limb's skin,
+/// which m_near_own then holds.
 void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
-    m_rows.clear();
+    find_own_skin(boundary, x, end);
     m_passed.resize(m_own.size());
-    for (size_t i = 0; i < m_own.size(); ++i) {
-        m_passed[i] = m_own[i] | m_unjoined[i];
-        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
-    }
+    for (size_t i = 0; i < m_own.size(); ++i) m_passed[i] = m_own[i] | m_unjoined[i];
     m_proximity.cover_rows(m_near_own, m_rows, boundary, end, m_passed, m_covers);
     m_next.clear();
     for (size_t k = 0; k < m_rows.size(); ++k) {
@@ -223,7 +220,6 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     m_x = state.x + dt * state.v;
     find_covered(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
     ignore_covered();
-    find_own_skin(boundary, state.x);
     ignore_folded(boundary, state.x, StepEnd::start);
     release(boundary, state.x, m_x);
     ignore_folded(boundary, m_x, StepEnd::end);

@@ -75,7 +75,7 @@ class LimbOverlap {
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_covered();
-    void find_own_skin(const Boundary& boundary, const Points& x);
+    void find_own_skin(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
     bool ignores_nothing() const;
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
