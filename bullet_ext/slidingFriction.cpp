@@ -169,6 +169,7 @@ void limitStretch(const SlidingStep& step, const Points& x, double taken) {
 void applySlidingFriction(btSoftBody& body, const SlidingStep& step) {
     if (step.solids.empty() || !(body.m_cfg.kDF > 0)) return;
     const std::vector<Slider> sliders = findSliders(body, step);
+    if (sliders.empty()) return;
     const double motion = motionOf(step);
     const Points x = step.to.x;
     for (const SlidingSolid& solid : step.solids) {

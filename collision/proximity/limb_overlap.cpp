@@ -177,25 +177,20 @@ void LimbOverlap::ignore_covered() {
     for (size_t i = 0; i < m_own.size(); ++i) m_ignored[i] |= m_covered & m_unjoined[i];
 }
 
-/// Of the vertices' own limbs, into m_near_own.
-void LimbOverlap::find_own_skin(const Boundary& boundary, const Points& x, StepEnd end) {
-    m_rows.clear();
-    for (size_t i = 0; i < m_own.size(); ++i) {
-        m_without[i] = ~m_own[i];
-        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
-    }
-    // Those of the end are nobody else's: the step has not been taken yet.
-    Proximity& searches = m_searches && end == StepEnd::start ? *m_searches : m_own_proximity;
-    searches.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
-}
-
 /// Lets vertices that are inside a joined limb ignore it where it lies over their own limb's skin,
 /// which m_near_own then holds.
 void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
-    find_own_skin(boundary, x, end);
+    m_rows.clear();
     m_passed.resize(m_own.size());
-    for (size_t i = 0; i < m_own.size(); ++i) m_passed[i] = m_own[i] | m_unjoined[i];
-    m_proximity.cover_rows(m_near_own, m_rows, boundary, end, m_passed, m_covers);
+    for (size_t i = 0; i < m_own.size(); ++i) {
+        m_without[i] = ~m_own[i];
+        m_passed[i] = m_own[i] | m_unjoined[i];
+        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
+    }
+    // What is nearest at the end nobody else asks: the step has not been taken yet.
+    Proximity& searches = m_searches && end == StepEnd::start ? *m_searches : m_own_proximity;
+    searches.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
+    searches.cover_rows(m_near_own, m_rows, end, m_passed, m_covers);
     m_next.clear();
     for (size_t k = 0; k < m_rows.size(); ++k) {
         const int i = m_rows[k];

@@ -44,8 +44,9 @@ struct IgnoredDepth {
 class LimbOverlap {
  public:
     /// @param trees     see Proximity
-    /// @param searches  asked for the vertices' own limbs: of whoever asks for their nearest points
-    ///                  anyway, so that few are searched for twice. Null: its own
+    /// @param searches  asked for the vertices' own limbs at the start of a step: of whoever asks
+    ///                  for their nearest points then, so that few are searched for twice. Null:
+    ///                  its own
     /// @throws ArgumentError if a setting is out of range
     explicit LimbOverlap(const LimbOverlapSettings& settings = {},
                          const std::shared_ptr<ObstacleTrees>& trees = nullptr,
@@ -75,7 +76,6 @@ class LimbOverlap {
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_covered();
-    void find_own_skin(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
     bool ignores_nothing() const;
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
@@ -86,7 +86,7 @@ class LimbOverlap {
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
     Proximity m_own_proximity;            ///< of own limbs: searches begin at the faces found last
-    Proximity* m_searches;                ///< used instead; or null
+    Proximity* m_searches;                ///< used instead at the start of a step; or null
     std::vector<char> m_has_limbs;        ///< each obstacle of the last step
     std::vector<Limbs> m_known, m_found;  ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them

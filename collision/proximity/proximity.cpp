@@ -213,14 +213,6 @@ void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
     contacts.distance[i] = nearest.distance;
 }
 
-std::optional<Cover> cover_of(const MeshSurface& surface, const SurfaceContacts& contacts,
-                              Eigen::Index i, StepEnd end, LimbSet ignored,
-                              ClosestFaceTree::Stack& stack) {
-    constexpr double length = 0.5;  // m: thicker than any limb
-    const Points& points = end == StepEnd::start ? contacts.point0 : contacts.point1;
-    return surface.cover(points.row(i), contacts.face[size_t(i)], length, stack, ignored);
-}
-
 void resize(SurfaceContacts& contacts, Eigen::Index count) {
     contacts.obstacle.resize(size_t(count));
     contacts.face.resize(size_t(count));
@@ -350,22 +342,14 @@ struct Proximity::Impl {
 
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored, ClosestFaceTree::Stack& stack) const {
+        constexpr double length = 0.5;  // m: thicker than any limb
         if (!contacts.has(i)) return std::nullopt;
+        const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
         for (const Target& target : targets)
             if (target.index == contacts.obstacle[size_t(i)] && target.surface)
-                return cover_of(*target.surface, contacts, i, chosen_at, ignored, stack);
+                return target.surface->cover(points.row(i), contacts.face[size_t(i)], length, stack,
+                                             ignored);
         return std::nullopt;
-    }
-
-    /// Of each obstacle at one end of the step; null: none.
-    std::vector<std::shared_ptr<const MeshSurface>> surfaces_of(const Boundary& boundary,
-                                                                StepEnd end) {
-        std::vector<std::shared_ptr<const MeshSurface>> surfaces;
-        for (const Obstacle& obstacle : boundary.obstacles)
-            surfaces.push_back(obstacle.shape == ObstacleShape::mesh
-                                   ? trees_for(boundary).surface(obstacle, end)
-                                   : nullptr);
-        return surfaces;
     }
 
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
@@ -444,22 +428,16 @@ std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::In
 }
 
 void Proximity::cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
-                           const Boundary& boundary, StepEnd end,
-                           const std::vector<LimbSet>& ignored,
+                           StepEnd chosen_at, const std::vector<LimbSet>& ignored,
                            std::vector<std::optional<Cover>>& covers) {
-    const auto surfaces = m_impl->surfaces_of(boundary, end);
     const int count = static_cast<int>(rows.size());
     covers.resize(rows.size());
-    const int threads = count * mesh_work < min_parallel ? 1 : m_impl->thread_count();
-    m_impl->stacks.resize(std::max(m_impl->stacks.size(), size_t(threads)));
+    const int threads = m_impl->threads_for(count);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64) if (threads > 1)
     for (int k = 0; k < count; ++k) {
-        const auto i = size_t(rows[size_t(k)]);
-        const int obstacle = contacts.obstacle[i];
-        covers[size_t(k)] = std::nullopt;
-        if (obstacle < 0 || !surfaces[size_t(obstacle)]) continue;
-        covers[size_t(k)] = cover_of(*surfaces[size_t(obstacle)], contacts, rows[size_t(k)], end,
-                                     ignored[i], m_impl->stacks[size_t(omp_get_thread_num())]);
+        const int i = rows[size_t(k)];
+        covers[size_t(k)] = m_impl->cover(contacts, i, chosen_at, ignored[size_t(i)],
+                                          m_impl->stacks[size_t(omp_get_thread_num())]);
     }
 }
 

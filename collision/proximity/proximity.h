@@ -111,12 +111,11 @@ class Proximity {
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored = 0);
 
-    /// The same for several rows, on several threads, at either end of the step, whatever was asked
-    /// before.
+    /// The same for several rows, on several threads.
     /// @param ignored  |V|: limbs that do not count for each row
     /// @param covers   |rows|: what lies over each of `rows`
     void cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
-                    const Boundary& boundary, StepEnd end, const std::vector<LimbSet>& ignored,
+                    StepEnd chosen_at, const std::vector<LimbSet>& ignored,
                     std::vector<std::optional<Cover>>& covers);
 
     /// Meshes that are remembered at present.

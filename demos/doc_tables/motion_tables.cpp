@@ -93,37 +93,45 @@ MarkdownTable motions_table(const std::vector<DataFile>& files) {
 
 namespace {
 
-/// Cells that hold a figure of every solver, "–" where none has one.
-class SolverCells {
- public:
-    explicit SolverCells(const DataFile& file)
-        : m_file(file), m_solvers(names_of(file.rows("rows"), "/solver")) {}
+using CellText = std::function<std::string(double)>;
 
-    /// "scene: SOLVER / SOLVER"
-    std::string heading() const {
-        std::string order;
-        for (const std::string& solver : m_solvers) order += (order.empty() ? "" : " / ") + solver;
-        return "scene: " + order;
+/// A figure of every solver in one cell, "–" where none has one.
+std::string solver_cells(const DataFile& file, const std::vector<std::string>& solvers,
+                         const std::string& scene, const std::string& member,
+                         const CellText& text) {
+    std::string cells, dashes;
+    for (const std::string& solver : solvers) {
+        const DataRow row = file.row("rows", {{"scene", scene}, {"solver", solver}});
+        cells += (cells.empty() ? "" : " / ") + text(row.number(member));
+        dashes += (dashes.empty() ? "" : " / ") + text(std::nan(""));
     }
-    std::vector<std::string> scenes() const { return names_of(m_file.rows("rows"), "/scene"); }
+    return cells == dashes ? text(std::nan("")) : cells;
+}
 
-    template <class Text>
-    std::string of(const std::string& scene, const std::string& member, const Text& text) const {
-        std::string cells, dashes;
-        for (const std::string& solver : m_solvers) {
-            const DataRow row = m_file.row("rows", {{"scene", scene}, {"solver", solver}});
-            cells += (cells.empty() ? "" : " / ") + text(row.number(member));
-            dashes += (dashes.empty() ? "" : " / ") + text(std::nan(""));
-        }
-        return cells == dashes ? text(std::nan("")) : cells;
-    }
-
- private:
-    const DataFile& m_file;
-    std::vector<std::string> m_solvers;
+struct SceneColumn {
+    std::string heading, member;
+    CellText text;
 };
 
-auto fixed(int digits) {
+/// A row per scene; its cells have the figures of all solvers.
+MarkdownTable scenes_table(const DataFile& file, const std::vector<SceneColumn>& columns) {
+    const std::vector<DataRow> rows = file.rows("rows");
+    const std::vector<std::string> solvers = names_of(rows, "/solver");
+    std::string order;
+    for (const std::string& solver : solvers) order += (order.empty() ? "" : " / ") + solver;
+    MarkdownTable table;
+    table.heading = {"scene: " + order};
+    for (const SceneColumn& column : columns) table.heading.push_back(column.heading);
+    for (const std::string& scene : names_of(rows, "/scene")) {
+        table.rows.push_back({scene});
+        for (const SceneColumn& column : columns)
+            table.rows.back().push_back(
+                solver_cells(file, solvers, scene, column.member, column.text));
+    }
+    return table;
+}
+
+CellText fixed(int digits) {
     return [digits](double value) { return decimals(value, digits); };
 }
 
@@ -134,32 +142,21 @@ std::string two(double value) {
 }  // namespace
 
 MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files) {
-    const SolverCells cells(files.at(0));
-    MarkdownTable table;
-    table.heading = {cells.heading(), "rest (mm)",   "energy (mm)",       "momentum",
-                     "inside (mm)",   "ms per step", "in the last second"};
-    for (const std::string& scene : cells.scenes())
-        table.rows.push_back({scene, cells.of(scene, "/rest_error_mm", fixed(0)),
-                              cells.of(scene, "/rest_energy_mm", fixed(1)),
-                              cells.of(scene, "/momentum_error", fixed(3)),
-                              cells.of(scene, "/penetration_max_mm", fixed(0)),
-                              cells.of(scene, "/ms_median", two),
-                              cells.of(scene, "/ms_median_last_second", two)});
-    return table;
+    return scenes_table(files.at(0), {{"rest (mm)", "/rest_error_mm", fixed(0)},
+                                      {"energy (mm)", "/rest_energy_mm", fixed(1)},
+                                      {"momentum", "/momentum_error", fixed(3)},
+                                      {"inside (mm)", "/penetration_max_mm", fixed(0)},
+                                      {"ms per step", "/ms_median", two},
+                                      {"in the last second", "/ms_median_last_second", two}});
 }
 
 MarkdownTable bullet_demos_table(const std::vector<DataFile>& files) {
-    const SolverCells cells(files.at(0));
-    MarkdownTable table;
-    table.heading = {cells.heading(), "energy made (J)",    "stretch: 99 %", "longest",
-                     "inside (mm)",   "fastest node (m/s)", "ms per step"};
-    for (const std::string& scene : cells.scenes())
-        table.rows.push_back(
-            {scene, cells.of(scene, "/energy_rise_j", two),
-             cells.of(scene, "/stretch_p99", fixed(2)), cells.of(scene, "/stretch_max", fixed(2)),
-             cells.of(scene, "/penetration_max_mm", fixed(0)),
-             cells.of(scene, "/node_speed_max", fixed(0)), cells.of(scene, "/ms_median", two)});
-    return table;
+    return scenes_table(files.at(0), {{"energy made (J)", "/energy_rise_j", two},
+                                      {"stretch: 99 %", "/stretch_p99", fixed(2)},
+                                      {"longest", "/stretch_max", fixed(2)},
+                                      {"inside (mm)", "/penetration_max_mm", fixed(0)},
+                                      {"fastest node (m/s)", "/node_speed_max", fixed(0)},
+                                      {"ms per step", "/ms_median", two}});
 }
 
 }  // namespace cloth

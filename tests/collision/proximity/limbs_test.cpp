@@ -34,7 +34,7 @@ TriMesh without(const TriMesh& mesh, const std::vector<std::uint8_t>& limbs, Lim
     for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
         if (((ignored >> limbs[static_cast<size_t>(f)]) & 1u) == 0)
             rest.faces.row(count++) = mesh.faces.row(f);
-    rest.faces.conservativeResize(count, 3);
+    rest.faces = Faces(rest.faces.topRows(count));
     return rest;
 }
 
@@ -210,7 +210,7 @@ TEST(Limbs, WhatCoversSeveralRowsIsWhatCoversEachForAnyNumberOfThreads) {
         SurfaceContacts contacts;
         proximity.query(balls.x, balls.boundary, contacts);
         std::vector<std::optional<Cover>> covers;
-        proximity.cover_rows(contacts, rows, balls.boundary, StepEnd::start, ignored, covers);
+        proximity.cover_rows(contacts, rows, StepEnd::start, ignored, covers);
         ASSERT_EQ(covers.size(), rows.size());
         int found = 0;
         for (size_t k = 0; k < rows.size(); ++k) {
