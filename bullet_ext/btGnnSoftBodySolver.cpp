@@ -10,6 +10,7 @@
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
+#include "bullet_ext/solveSteps.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/deadline.h"
@@ -319,6 +320,7 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     const cloth::Deadline deadline =
         limited ? cloth::Deadline::in(m_settings.maxMs) : cloth::Deadline();
     int waiting = limited ? activeCloth() : 0;
+    std::vector<Stepped> together;
     for (int i = 0; i < m_softBodySet.size(); ++i) {
         btSoftBody& body = *m_softBodySet[i];
         Entry& entry = m_entries[&body];
@@ -338,8 +340,15 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
         if (entry.stepping != Stepping::cloth) continue;
         if (limited)
             entry.step->setDeadline(cloth::Deadline::in(deadline.left() / std::max(1, waiting--)));
-        stepCloth(body, entry, static_cast<double>(solverdt));
+        const Stepped cloth{&body, &entry};
+        const bool begun =
+            entry.step->begin(static_cast<double>(solverdt), m_obstacles, m_settings.obstacleReach);
+        if (begun && m_settings.parallel && !limited && entry.step->movesNothing(m_obstacles))
+            together.push_back(cloth);
+        else
+            stepTogether({cloth});
     }
+    stepTogether(together);
     for (const std::string& message : m_obstacles.takeMessages()) say(message);
 }
 
@@ -350,8 +359,25 @@ int btGnnSoftBodySolver::activeCloth() const {
     return count;
 }
 
-void btGnnSoftBodySolver::stepCloth(btSoftBody& body, Entry& entry, double h) {
-    const auto result = entry.step->step(h, m_obstacles, m_settings.obstacleReach);
+/// The rest of a world step that has begun. A body may take several cloth steps in it: they are
+/// solved in rounds.
+void btGnnSoftBodySolver::stepTogether(const std::vector<Stepped>& cloth) {
+    std::vector<cloth::SoftBodyStep*> due;
+    for (const Stepped& one : cloth) due.push_back(one.entry->step.get());
+    while (!due.empty()) {
+        due.erase(std::remove_if(due.begin(), due.end(),
+                                 [&](auto* step) { return !step->beginClothStep(m_obstacles); }),
+                  due.end());
+        cloth::solveSteps(due);
+        for (cloth::SoftBodyStep* step : due) step->endClothStep(m_obstacles);
+    }
+    for (const Stepped& one : cloth) finishStep(one);
+}
+
+void btGnnSoftBodySolver::finishStep(const Stepped& cloth) {
+    btSoftBody& body = *cloth.body;
+    Entry& entry = *cloth.entry;
+    const cloth::SoftBodyStep::Result result = entry.step->end(m_obstacles);
     m_status.steps += result.steps;
     m_status.failedSteps += result.failed_steps;
     if (result.restored_nodes > 0)

@@ -42,6 +42,10 @@ struct btGnnSolverSettings {
     double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
     int maxFailedSteps = 3;      ///< failures in a row after which Bullet steps it, 1 to 1000000
+    /// Bodies that no rigid body is pushed by are stepped at the same time, see solveSteps(): their
+    /// steppers must share nothing that serves one thread at a time, such as a cloth::Predictor.
+    /// False, or with maxMs: all are stepped one after the other.
+    bool parallel = true;
     /// Time for all cloth in a world step (ms), 0.1 to infinity (no limit). Each body gets an equal
     /// share of what is left; its steppers must know limits, see cloth::Stepper::set_max_ms(). What
     /// the cloth does then depends on how fast the machine is.
@@ -183,7 +187,12 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void refresh(btSoftBody& body, Entry& entry);
     void followScale(btSoftBody& body, Entry& entry);
     int activeCloth() const;
-    void stepCloth(btSoftBody& body, Entry& entry, double h);
+    struct Stepped {
+        btSoftBody* body;
+        Entry* entry;
+    };
+    void stepTogether(const std::vector<Stepped>& cloth);
+    void finishStep(const Stepped& cloth);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;

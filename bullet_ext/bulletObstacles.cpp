@@ -45,9 +45,9 @@ double travelTime(const btCollisionObject& object, const btTransform& from, doub
     return steps >= 1.0 && steps <= kMaxSteps ? steps * h : h;
 }
 
-bool overlaps(const Points& x, const Vec3& low, const Vec3& high) {
-    const Vec3 x_low = x.colwise().minCoeff(), x_high = x.colwise().maxCoeff();
-    return (x_low.array() <= high.array()).all() && (x_high.array() >= low.array()).all();
+bool isPushable(const btCollisionObject* object) {
+    const btRigidBody* rigid = btRigidBody::upcast(object);
+    return rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0;
 }
 
 struct ProxyCollector : btBroadphaseAabbCallback {
@@ -126,7 +126,7 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
     if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0))
         throw ArgumentError("animated obstacle", "vertices or duration are not finite",
                             "check the animation before handing it over");
-    m_animated[object] = {std::move(mesh), 0.0, 0.0};
+    m_animated.insert_or_assign(object, Animation(std::move(mesh)));
 }
 
 bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
@@ -256,8 +256,19 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
     return obstacles;
 }
 
+BulletObstacles::Animation::Animation(AnimatedMesh given) : mesh(std::move(given)) {
+    const auto around = [](const Points& x) -> Box {
+        return {x.colwise().minCoeff(), x.colwise().maxCoeff()};
+    };
+    box0 = around(mesh.x0);
+    box1 = around(mesh.x1);
+}
+
 bool BulletObstacles::Animation::near(const Vec3& low, const Vec3& high) const {
-    return overlaps(mesh.x0, low, high) || overlaps(mesh.x1, low, high);
+    const auto overlaps = [&](const Box& box) {
+        return (box.low.array() <= high.array()).all() && (box.high.array() >= low.array()).all();
+    };
+    return overlaps(box0) || overlaps(box1);
 }
 
 std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, const Vec3& low,
@@ -277,24 +288,20 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
 
 std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const Vec3& low,
                                                    const Vec3& high, const TimeSpan& span) {
-    const auto dynamic = [](const btCollisionObject* object) {
-        const btRigidBody* rigid = btRigidBody::upcast(object);
-        return rigid && !rigid->isStaticOrKinematicObject() && rigid->getInvMass() > 0;
-    };
-    const auto moves = [&](const btCollisionObject* object) {
-        return dynamic(object) || object->isKinematicObject();
+    const auto moves = [](const btCollisionObject* object) {
+        return isPushable(object) || object->isKinematicObject();
     };
     const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
     const bool closing = objects.size() > 1 && std::any_of(objects.begin(), objects.end(), moves);
     std::vector<NearSolid> solids;
     if (!closing && body.m_anchors.size() == 0 &&
-        std::none_of(objects.begin(), objects.end(), dynamic))
+        std::none_of(objects.begin(), objects.end(), isPushable))
         return solids;
     for (const btCollisionObject* object : objects) {
         Track& track = update(*object);
         // The world owns the body and may push it; cloth only hands on what the world would do.
         btRigidBody* pushed =
-            dynamic(object) ? const_cast<btRigidBody*>(btRigidBody::upcast(object)) : nullptr;
+            isPushable(object) ? const_cast<btRigidBody*>(btRigidBody::upcast(object)) : nullptr;
         const auto inverseAt = [&](double time) {
             return interpolate(track.begin, track.end, time / m_h).inverse();
         };
@@ -302,6 +309,12 @@ std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const
                           inverseAt(span.begin), &distancesOf(track)});
     }
     return solids;
+}
+
+bool BulletObstacles::anyDynamicNear(const btSoftBody& body, const Vec3& low,
+                                     const Vec3& high) const {
+    const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
+    return std::any_of(objects.begin(), objects.end(), isPushable);
 }
 
 const std::vector<PartDistance>& BulletObstacles::distancesOf(Track& track) const {

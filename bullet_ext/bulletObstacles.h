@@ -105,6 +105,9 @@ class BulletObstacles {
     std::vector<NearSolid> solidsNear(const btSoftBody& body, const Vec3& low, const Vec3& high,
                                       const TimeSpan& span);
 
+    /// Whether there is an object among them that cloth can push.
+    bool anyDynamicNear(const btSoftBody& body, const Vec3& low, const Vec3& high) const;
+
     /// How deep the deepest of the points `x` (|V| x 3, m) is in an object that is not an animated
     /// mesh, at the end of the world step (m). What is deeper in a mesh than 0.1 m is not seen.
     /// @param left_out  points that do not count (|V|)
@@ -137,8 +140,14 @@ class BulletObstacles {
         btTransform target;                   ///< where Bullet says the object is
         double remaining = 0.0;               ///< time left to reach the target (s)
     };
+    struct Box {
+        Vec3 low, high;
+    };
     struct Animation {
+        explicit Animation(AnimatedMesh given);
+
         AnimatedMesh mesh;
+        Box box0, box1;                 ///< around x0 and x1: every body of the world asks for them
         double begin = 0.0, end = 0.0;  ///< the present world step, counted from x0 (s)
         bool near(const Vec3& low, const Vec3& high) const;
         /// A mesh that was not given anew stands still; one that was is assumed to go on as it

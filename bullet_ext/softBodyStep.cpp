@@ -25,19 +25,15 @@ btVector3 restored(const float* written) {
     return {written[0], written[1], written[2]};
 }
 
-struct Box {
-    Vec3 low, high;
-};
+}  // namespace
 
 /// Where the cloth is and will be after `time` seconds, and `reach` around it.
-Box boxAhead(const ClothState& state, double time, double reach) {
+SoftBodyStep::Box SoftBodyStep::boxAhead(const ClothState& state, double time, double reach) {
     const Points ahead = state.x + time * state.v;
     const Vec3 margin = Vec3::Constant(reach);
     return {state.x.colwise().minCoeff().cwiseMin(ahead.colwise().minCoeff()).transpose() - margin,
             state.x.colwise().maxCoeff().cwiseMax(ahead.colwise().maxCoeff()).transpose() + margin};
 }
-
-}  // namespace
 
 SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
                            std::unique_ptr<Stepper> stepper, double sleep_motion,
@@ -60,39 +56,45 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
     m_impulse = Points::Zero(count, 3);
 }
 
-SoftBodyStep::Result SoftBodyStep::step(double h, BulletObstacles& obstacles, double reach) {
+bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     // A frame that took so long, or such a time scale, must not cost a thousand cloth steps.
     constexpr double kLongest = 2.0;  // s
     m_time_scale = static_cast<double>(m_body.m_cfg.timescale);
+    m_world_h = h;
     m_h = std::min(h * m_time_scale, kLongest);
-    Result result;
+    m_reach = reach;
+    m_result = Result();
+    m_begun = false;
     // Nodes changed since the solver looked at them: next step.
-    if (m_body.m_nodes.size() != m_shown.x.rows()) return result;
-    result.restored_nodes = restoreNodes();
-    if (!(m_h > 0.0)) return result;  // a paused body
+    if (m_body.m_nodes.size() != m_shown.x.rows()) return false;
+    m_result.restored_nodes = restoreNodes();
+    if (!(m_h > 0.0)) return false;  // a paused body
     takeConstants();
     takeNodes();
     takeForces();
     takePins();
-    const Box box = boxAhead(m_shown, m_h, reach);
-    obstacles.watch(m_body, box.low, box.high);
-    const double end = m_h * (1.0 - 1e-3);  // float time steps must not cost an extra cloth step
-    while (!m_cloth_step.valid || m_cloth_step.begin + m_cloth_step.length < end) {
-        startClothStep(result.steps == 0);
-        result.failed_steps += runClothStep(obstacles, reach) ? 0 : 1;
-        result.caught_nodes = std::max(result.caught_nodes, m_pinched.caught());
-        result.calmed |= m_reactions.calmed();
-        ++result.steps;
-    }
+    m_box = boxAhead(m_shown, m_h, reach);
+    obstacles.watch(m_body, m_box.low, m_box.high);
+    return m_begun = true;
+}
+
+bool SoftBodyStep::movesNothing(const BulletObstacles& obstacles) const {
+    for (int a = 0; a < m_body.m_anchors.size(); ++a)
+        if (isDynamic(*m_body.m_anchors[a].m_body)) return false;
+    return !obstacles.anyDynamicNear(m_body, m_box.low, m_box.high);
+}
+
+SoftBodyStep::Result SoftBodyStep::end(BulletObstacles& obstacles) {
+    if (!m_begun) return m_result;
     followAnchors();
     showClothStep();
     writeNodes();
     measureDepth(obstacles);
-    result.stretched_anchor = stretchedAnchor();
-    m_reactions.apply(m_h, obstacles.solidsNear(m_body, box.low, box.high, {h, 0.0}));
+    m_result.stretched_anchor = stretchedAnchor();
+    m_reactions.apply(m_h, obstacles.solidsNear(m_body, m_box.low, m_box.high, {m_world_h, 0.0}));
     m_cloth_step.begin -= m_h;
-    m_sleep.afterStep(m_shown.x, h, obstacles, box.low, box.high);
-    return result;
+    m_sleep.afterStep(m_shown.x, m_world_h, obstacles, m_box.low, m_box.high);
+    return m_result;
 }
 
 bool SoftBodyStep::sleepsOn(const BulletObstacles& obstacles) {
@@ -236,8 +238,8 @@ Points SoftBodyStep::pinsAt(double time) const {
     return m_pins_after + std::min(rest, 1.0) * m_pins_drift;
 }
 
-Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles, const Vec3& low,
-                                           const Vec3& high) {
+Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles) {
+    const auto& [low, high] = m_cloth_box;
     Boundary boundary;
     boundary.gravity = toVec3(m_body.m_worldInfo->m_gravity);
     boundary.pin_targets = pinsAt(m_cloth_step.begin + m_cloth_step.length);
@@ -287,43 +289,59 @@ bool SoftBodyStep::looksAhead() const {
     return true;
 }
 
-bool SoftBodyStep::runClothStep(BulletObstacles& obstacles, double reach) {
-    const ClothState& from = m_cloth_step.from;
-    const Box box = boxAhead(from, m_cloth_step.length, reach);
-    Boundary boundary = boundaryOfClothStep(obstacles, box.low, box.high);
+bool SoftBodyStep::beginClothStep(BulletObstacles& obstacles) {
+    if (!m_begun) return false;
+    const double end = m_h * (1.0 - 1e-3);  // float time steps must not cost an extra cloth step
+    if (m_cloth_step.valid && m_cloth_step.begin + m_cloth_step.length >= end) return false;
+    startClothStep(m_result.steps == 0);
+    m_cloth_box = boxAhead(m_cloth_step.from, m_cloth_step.length, m_reach);
+    m_boundary = boundaryOfClothStep(obstacles);
     const bool now =
         std::abs(m_cloth_step.begin) + std::abs(m_cloth_step.length - m_h) < 1e-3 * m_h;
-    const bool hang = now && m_anchored.begin(m_body, *m_garment, m_cloth_step.length);
-    ClothState to;
+    m_hang = now && m_anchored.begin(m_body, *m_garment, m_cloth_step.length);
+    return true;
+}
+
+void SoftBodyStep::solve() {
+    const ClothState& from = m_cloth_step.from;
     StageTimes times;
     do {
-        to = from;
+        m_solved = from;
         if (m_deadline.is_set()) m_stepper->set_max_ms(std::max(1e-3, m_deadline.left()));
-        m_report = m_stepper->step(boundary, m_cloth_step.length, to);
-        m_report.finite = m_report.finite && fitsFloats(to.x) && fitsFloats(to.v);
+        m_report = m_stepper->step(m_boundary, m_cloth_step.length, m_solved);
+        m_report.finite = m_report.finite && fitsFloats(m_solved.x) && fitsFloats(m_solved.v);
         times += m_report.times;
-    } while (hang && m_anchored.tryAgain(*m_stepper, from, boundary, to, m_report));
+    } while (m_hang && m_anchored.tryAgain(*m_stepper, from, m_boundary, m_solved, m_report));
     m_report.times = times;
-    if (hang && m_report.finite) m_anchored.place(to);
+}
+
+void SoftBodyStep::endClothStep(BulletObstacles& obstacles) {
+    const ClothState& from = m_cloth_step.from;
+    if (m_hang && m_report.finite) m_anchored.place(m_solved);
     if (m_report.finite)
-        m_cloth_step.to = std::move(to);
+        m_cloth_step.to = std::move(m_solved);
     else
         m_cloth_step.to = from;
     m_cloth_step.to.time = from.time + m_cloth_step.length;
     // Impulses of friction are handed on by themselves; where there is no body, it is in the
     // balance.
     const bool alone = m_solids.empty();
-    if (alone) slowDown(obstacles, box.low, box.high);
+    if (alone) slowDown(obstacles);
     if (m_report.finite)
-        m_reactions.collect({*m_garment, *m_stepper, boundary, from, m_cloth_step.to,
+        m_reactions.collect({*m_garment, *m_stepper, m_boundary, from, m_cloth_step.to,
                              m_cloth_step.length, m_solids, m_pinched, m_continues,
-                             hang ? &m_anchored : nullptr});
-    if (!alone) slowDown(obstacles, box.low, box.high);
-    return m_report.finite;
+                             m_hang ? &m_anchored : nullptr});
+    if (!alone) slowDown(obstacles);
+    m_boundary = Boundary();  // large, where obstacles are meshes
+    m_result.failed_steps += m_report.finite ? 0 : 1;
+    m_result.caught_nodes = std::max(m_result.caught_nodes, m_pinched.caught());
+    m_result.calmed |= m_reactions.calmed();
+    ++m_result.steps;
 }
 
 /// Bullet's friction and damping, which it gives per world step.
-void SoftBodyStep::slowDown(BulletObstacles& obstacles, const Vec3& low, const Vec3& high) {
+void SoftBodyStep::slowDown(BulletObstacles& obstacles) {
+    const auto& [low, high] = m_cloth_box;
     if (m_sliding_friction && m_report.finite) {
         const double end = (m_cloth_step.begin + m_cloth_step.length) / m_time_scale;
         applySlidingFriction(m_body,

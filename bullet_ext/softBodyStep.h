@@ -54,8 +54,27 @@ class SoftBodyStep {
         int stretched_anchor = -1;  ///< node that an anchor holds farther than the cloth reaches
     };
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
-    /// the world step and writes the nodes. Obstacles are looked for within `reach` (m).
-    Result step(double h, BulletObstacles& obstacles, double reach);
+    /// the world step and writes the nodes. Obstacles are looked for within `reach` (m):
+    ///
+    ///     step.begin(h, obstacles, reach);
+    ///     while (step.beginClothStep(obstacles)) {
+    ///         step.solve();
+    ///         step.endClothStep(obstacles);
+    ///     }
+    ///     const SoftBodyStep::Result result = step.end(obstacles);
+    ///
+    /// solve() takes nearly all of the time, and several bodies may do it at the same time if their
+    /// steppers share nothing; the other functions change the world.
+    /// @return  false: nothing is to be stepped, as in a paused body
+    bool begin(double h, BulletObstacles& obstacles, double reach);
+    /// Whether no body of the world can be moved by this cloth, so that the order in which it and
+    /// other cloth are stepped does not count.
+    bool movesNothing(const BulletObstacles& obstacles) const;
+    /// The next cloth step; false: the cloth is past the end of the world step.
+    bool beginClothStep(BulletObstacles& obstacles);
+    void solve();
+    void endClothStep(BulletObstacles& obstacles);
+    Result end(BulletObstacles& obstacles);
     /// Deepest node that is not pinned in an obstacle (m), as the last world step shows both. In
     /// animated meshes only what the last cloth step ended with is known.
     double shownDepth() const { return m_depth; }
@@ -63,6 +82,9 @@ class SoftBodyStep {
     bool sleepsOn(const BulletObstacles& obstacles);
 
  private:
+    struct Box {
+        Vec3 low, high;
+    };
     struct StepSpan {
         ClothState from, to;
         double begin = 0.0;   ///< relative to the start of the present world step (s)
@@ -79,11 +101,11 @@ class SoftBodyStep {
     void takePins();
     void followAnchors();
     Points pinsAt(double time) const;
-    Boundary boundaryOfClothStep(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
+    static Box boxAhead(const ClothState& state, double time, double reach);
+    Boundary boundaryOfClothStep(BulletObstacles& obstacles);
     void startClothStep(bool first_of_step);
     bool looksAhead() const;
-    bool runClothStep(BulletObstacles& obstacles, double reach);
-    void slowDown(BulletObstacles& obstacles, const Vec3& low, const Vec3& high);
+    void slowDown(BulletObstacles& obstacles);
     void showClothStep();
     void writeNodes();
     void measureDepth(BulletObstacles& obstacles);
@@ -104,6 +126,15 @@ class SoftBodyStep {
     double m_time_scale = 1.0;  ///< time of the cloth over time of the world
     double m_depth = 0.0;       ///< shownDepth()
     double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
+    double m_world_h = 0.0;     ///< the same in the time of the world
+    double m_reach = 0.0;       ///< (m)
+    bool m_begun = false;       ///< the present world step steps the cloth
+    Box m_box;                  ///< where obstacles of the world step are looked for
+    Result m_result;            ///< of the present world step
+    Box m_cloth_box;            ///< where those of the present cloth step are
+    Boundary m_boundary;        ///< of the present cloth step
+    ClothState m_solved;        ///< its end, as the stepper has it
+    bool m_hang = false;        ///< it is solved together with bodies on anchors
     bool m_prepared = false;    ///< the stepper knows how long its steps are
     StepSpan m_cloth_step;
     ClothState m_shown;    ///< what the nodes say, in doubles
