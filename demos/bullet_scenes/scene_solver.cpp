@@ -1,8 +1,11 @@
 #include "demos/bullet_scenes/scene_solver.h"
 
+#include <optional>
+
 #include "demos/compare/arguments.h"
 #include "demos/compare/solver_factory.h"
 #include "gnn/model/make_cloth.h"
+#include "gnn/physics/xpbd/xpbd_stepper.h"
 
 namespace cloth {
 
@@ -13,6 +16,20 @@ StepperFactory quasi_newton(int iterations) {
     settings.step.quasi_newton = IterationLimits::exactly(iterations);
     settings.guard.iterations.iterations = iterations;
     return [settings](const Garment& garment) { return make_cloth(garment, settings); };
+}
+
+StepperFactory xpbd(int substeps) {
+    XpbdSettings settings;
+    settings.substeps = substeps;
+    return [settings](const Garment& garment) {
+        return std::make_unique<XpbdStepper>(garment, settings);
+    };
+}
+
+/// The K of a name that is PREFIX and K; none if it is not.
+std::optional<int> number_after(const std::string& name, const std::string& prefix) {
+    if (name.rfind(prefix, 0) != 0) return std::nullopt;
+    return whole_number("solver " + name, name.substr(prefix.size()), 1, 1000);
 }
 
 StepperFactory network(const std::string& name, const std::string& folder) {
@@ -41,12 +58,14 @@ btGnnSolverSettings defaults_of(const SceneRecipe& recipe) {
 std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name,
                                                         const btGnnSolverSettings& settings) const {
     if (name == "bullet") return nullptr;
-    const std::string prefix = "quasi-newton-";
-    if (name.rfind(prefix, 0) == 0)
-        return std::make_unique<btGnnSoftBodySolver>(
-            quasi_newton(whole_number("solver " + name, name.substr(prefix.size()), 1, 1000)),
-            settings);
-    return std::make_unique<btGnnSoftBodySolver>(network(name, m_weights), settings);
+    StepperFactory factory;
+    if (const auto iterations = number_after(name, "quasi-newton-"))
+        factory = quasi_newton(*iterations);
+    else if (const auto substeps = number_after(name, "xpbd-"))
+        factory = xpbd(*substeps);
+    else
+        factory = network(name, m_weights);
+    return std::make_unique<btGnnSoftBodySolver>(factory, settings);
 }
 
 }  // namespace cloth

@@ -9,8 +9,8 @@
 namespace cloth {
 
 /// Makes soft body solvers by name: "bullet" is Bullet's own (null), "quasi-newton-K" steps cloth
-/// with K iterations at the world's rate, everything else is a network NAME or NAME+K of the folder
-/// of weights (empty: the committed ones), safeguarded as it ships.
+/// with K iterations at the world's rate, "xpbd-N" with N sub-steps, everything else is a network
+/// NAME or NAME+K of the folder of weights (empty: the committed ones), safeguarded as it ships.
 class SceneSolvers {
  public:
     explicit SceneSolvers(std::string weights = "") : m_weights(std::move(weights)) {}
