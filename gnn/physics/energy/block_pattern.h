@@ -2,6 +2,8 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "data/core/garment.h"
@@ -57,6 +59,24 @@ class BlockPattern {
     std::vector<BlockSlot> m_diagonal;
     std::vector<std::array<BlockSlot, 9>> m_faces;
     std::vector<std::array<BlockSlot, 16>> m_hinges;
+};
+
+/// The pattern of a garment, found when it is first asked for: quasi-Newton iterations need none,
+/// and it is a quarter of their memory. Several threads may ask.
+class LazyBlockPattern {
+ public:
+    /// Keeps a reference to `garment`.
+    explicit LazyBlockPattern(const Garment& garment) : m_garment(&garment) {}
+
+    const BlockPattern& get() const {
+        std::call_once(m_once, [this] { m_pattern.emplace(*m_garment); });
+        return *m_pattern;
+    }
+
+ private:
+    const Garment* m_garment;
+    mutable std::once_flag m_once;
+    mutable std::optional<BlockPattern> m_pattern;
 };
 
 }  // namespace cloth

@@ -61,7 +61,7 @@ void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, const 
 IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSettings settings)
     : m_garment(&garment),
       m_settings(settings),
-      m_pattern(std::make_shared<const BlockPattern>(garment)),
+      m_pattern(std::make_shared<const LazyBlockPattern>(garment)),
       m_elastic(garment),
       m_gravity(garment),
       m_inertia(garment),
@@ -187,13 +187,14 @@ double IncrementalPotential::internal_energy(const Points& x) const {
 
 void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>& hessian,
                                    HessianKind kind) const {
-    m_pattern->reset(hessian);
+    const BlockPattern& pattern = m_pattern->get();
+    pattern.reset(hessian);
     double* values = hessian.valuePtr();
-    m_elastic.add_hessian(x, *m_pattern, kind, values);
-    m_inertia.add_hessian(*m_pattern, values);
-    m_contact.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
-    m_ridges.add_hessian(x, m_settings.contact_weight, *m_pattern, values);
-    m_friction.add_hessian(x, *m_pattern, values);
+    m_elastic.add_hessian(x, pattern, kind, values);
+    m_inertia.add_hessian(pattern, values);
+    m_contact.add_hessian(x, m_settings.contact_weight, pattern, values);
+    m_ridges.add_hessian(x, m_settings.contact_weight, pattern, values);
+    m_friction.add_hessian(x, pattern, values);
     m_self_contact.add_hessian(x, hessian);
 }
 

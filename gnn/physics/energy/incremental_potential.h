@@ -126,7 +126,7 @@ class IncrementalPotential {
     double m_dt = 0.0, m_inertial_dt = 0.0;
     double m_force_scale = 0.0;
     SurfaceContacts m_contacts;
-    std::shared_ptr<const BlockPattern> m_pattern;
+    std::shared_ptr<const LazyBlockPattern> m_pattern;  ///< of the Hessian
     ElasticEnergy m_elastic;
     GravityEnergy m_gravity;
     InertiaEnergy m_inertia;
