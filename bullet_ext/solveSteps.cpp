@@ -23,12 +23,13 @@ void solveSteps(const std::vector<SoftBodyStep*>& steps) {
     for (const SoftBodyStep* step : steps) vertices.push_back(step->garment().vertex_count());
     // Not by a clause of the pragma: a region of one thread is one, and regions within regions make
     // their threads anew each time.
-    if (!areFasterTogether(vertices, omp_get_max_threads())) {
+    const int threads = omp_get_max_threads();
+    if (!areFasterTogether(vertices, threads)) {
         for (SoftBodyStep* step : steps) step->solve();
         return;
     }
     const int count = static_cast<int>(steps.size());
-#pragma omp parallel for schedule(dynamic, 1)
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
     for (int k = 0; k < count; ++k) steps[static_cast<size_t>(k)]->solve();
 }
 

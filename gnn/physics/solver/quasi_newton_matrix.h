@@ -1,23 +1,21 @@
 #pragma once
 
 #include <list>
+#include <memory>
 #include <vector>
 
 #include "gnn/physics/solver/affine_correction.h"
 #include "gnn/physics/solver/contact_hessian.h"
-#include "gnn/physics/solver/supernodal_cholesky.h"
+#include "gnn/physics/solver/quasi_newton_system.h"
 
 namespace cloth {
-
-/// Cotangent Laplacian (|V| x |V|, no unit, positive semi-definite): x' L x is the Dirichlet energy
-/// times two. Pinkall and Polthier 1993, equation 7.
-Eigen::SparseMatrix<double> cotangent_laplacian(const TriMesh& rest);
 
 /// The constant matrix of the quasi-Newton method, on the free vertices of a garment, factorised:
 ///
 ///     P = M / dt^2 + (2 mu + lambda) L,     L: cotangent Laplacian of the rest mesh.
 ///
-/// Arrays called "free" have one row per unpinned vertex (n x 3). One object serves one thread.
+/// Arrays called "free" have one row per unpinned vertex (n x 3). One object serves one thread;
+/// those of equal garments share the factors.
 class QuasiNewtonMatrix {
  public:
     explicit QuasiNewtonMatrix(const Garment& garment);
@@ -29,7 +27,10 @@ class QuasiNewtonMatrix {
     bool prepare(const Garment& garment, double dt);
 
     static constexpr int max_factors = 16;
-    int factorisations() const { return m_factorisations; }  ///< so far
+    /// So far, those that an equal garment had made already included.
+    int factorisations() const { return m_factorisations; }
+    /// Constants and factors, which equal garments share.
+    const QuasiNewtonSystem& system() const { return *m_system; }
 
     /// Whether a garment has the vertices and pins that this matrix was made for.
     bool fits(const Garment& garment) const;
@@ -43,7 +44,7 @@ class QuasiNewtonMatrix {
     void add_scaled(double scale, const Points& free, Points& all) const;
 
     /// out = P^-1 b (free).
-    void solve(const Points& b, Points& out) const { m_factors.front().exact.solve(b, out); }
+    void solve(const Points& b, Points& out) const { m_factors.front()->exact.solve(b, out); }
 
     /// Until the next `prepare`, solves with contact blocks find the affine displacements of the
     /// vertices at x (|V| x 3, m) directly.
@@ -55,32 +56,20 @@ class QuasiNewtonMatrix {
     /// P^-1 b.
     void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
 
-    const std::vector<int>& row_of() const { return m_row_of; }  ///< |V|: free row, -1 for a pin
-    Eigen::Index free_count() const { return static_cast<Eigen::Index>(m_free.size()); }
+    const std::vector<int>& row_of() const {
+        return m_system->row_of();
+    }  ///< |V|: free row, -1 for a pin
+    Eigen::Index free_count() const { return static_cast<Eigen::Index>(m_system->free().size()); }
     Eigen::SparseMatrix<double> matrix() const;  ///< P (n x n), both triangles
 
  private:
-    struct Factor {
-        double dt;  ///< (s)
-        SupernodalCholesky<double> exact;
-        SupernodalCholesky<float>
-            fast;  ///< as a preconditioner; empty where it is not exact enough
-
-        bool factorise(const Eigen::SparseMatrix<double>& matrix, double mean_inertia);
-    };
     /// out = P^-1 b, to single precision where that suffices.
     void precondition(const Points& b, Points& out) const;
-    void number_free_vertices(const Garment& garment, const Eigen::SparseMatrix<double>& laplacian);
-    Eigen::SparseMatrix<double> assembled(double dt) const;
 
     Eigen::Index m_vertex_count;
-    std::vector<int> m_pins;
-    std::vector<int> m_free;                  ///< vertex of each free row
-    std::vector<int> m_row_of;                ///< |V|
-    Eigen::SparseMatrix<double> m_laplacian;  ///< free rows and columns
-    VectorX m_masses;                         ///< free rows
-    Fabric m_fabric;                          ///< of the factors
-    std::list<Factor> m_factors;              ///< the one in use first
+    std::shared_ptr<QuasiNewtonSystem> m_system;
+    /// The one in use first.
+    std::list<std::shared_ptr<const QuasiNewtonSystem::Factor>> m_factors;
     int m_factorisations = 0;
     bool m_deflated = false;
     mutable AffineCorrection m_affine;

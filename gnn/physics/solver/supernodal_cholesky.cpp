@@ -125,7 +125,6 @@ bool SupernodalCholesky<Real>::factorise(const Eigen::SparseMatrix<double>& matr
     if (cholesky.info() != Eigen::Success) return false;
     m_size = matrix.rows();
     build_panels(Eigen::SparseMatrix<double>(cholesky.matrixL()));
-    m_work.assign(4 * static_cast<size_t>(m_size), Real(0));
     return true;
 }
 
@@ -166,8 +165,10 @@ void SupernodalCholesky<Real>::append_panel(const Eigen::SparseMatrix<double>& l
 
 template <class Real>
 void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
-    Real* work = m_work.data();
+    static thread_local std::vector<Real> lanes;  // x, y, z, and 0 for ever
     const auto count = static_cast<size_t>(m_size);
+    if (lanes.size() < 4 * count) lanes.resize(4 * count, Real(0));
+    Real* work = lanes.data();
     for (size_t i = 0; i < count; ++i)
         for (size_t k = 0; k < 3; ++k) work[4 * i + k] = static_cast<Real>(b.data()[3 * i + k]);
     for (const SupernodalPanel& panel : m_panels)

@@ -28,7 +28,7 @@ struct SupernodalPanel {
 ///     SupernodalCholesky<double> factor;
 ///     if (factor.factorise(matrix)) factor.solve(b, x);
 ///
-/// One object serves one thread at a time: `solve` works in memory of the object.
+/// Several threads may solve with one object at once.
 ///
 /// @tparam Real  of the factor and of the solve, which take half the memory and two thirds of the
 ///               time in float; it is computed in double
@@ -48,8 +48,7 @@ class SupernodalCholesky {
         : m_size(factor.m_size),
           m_panels(factor.m_panels),
           m_rows(factor.m_rows),
-          m_values(factor.m_values.begin(), factor.m_values.end()),
-          m_work(factor.m_work.size(), Real(0)) {}
+          m_values(factor.m_values.begin(), factor.m_values.end()) {}
 
     /// x = A^-1 b for three columns (n x 3); b and x may be the same object.
     void solve(const Points& b, Points& x) const;
@@ -68,7 +67,6 @@ class SupernodalCholesky {
     std::vector<SupernodalPanel> m_panels;
     std::vector<int> m_rows;
     std::vector<Real> m_values;
-    mutable std::vector<Real> m_work;  ///< n x 4: x, y, z, unused
 };
 
 }  // namespace cloth
