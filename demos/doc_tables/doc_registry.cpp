@@ -1,6 +1,7 @@
 #include "demos/doc_tables/data_sets.h"
 #include "demos/doc_tables/engine_tables.h"
 #include "demos/doc_tables/motion_tables.h"
+#include "demos/doc_tables/scaling_tables.h"
 #include "demos/doc_tables/solver_tables.h"
 
 namespace cloth {
@@ -27,6 +28,8 @@ const Registry& doc_registry() {
          {"stiff", {"stiff"}, stiff_table},
          {"real_time", {"real_time_tshirt", "real_time_tshirt_1000"}, real_time_table},
          {"max_ms", {"max_ms"}, real_time_table},
+         {"scaling", {"scaling"}, scaling_table},
+         {"many_characters", {"many_characters"}, many_characters_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},
