@@ -74,7 +74,8 @@ struct btGnnSolverStatus {
     /// through each other there is no room for cloth, see cloth::LimbOverlap.
     double maxIgnoredDepth = 0.0;
     int nodesInIgnoredLimbs = 0;  ///< nodes inside such limbs, all cloth together
-    cloth::StageTimes times;      ///< of the last world step, all cloth together
+    cloth::StageTimes times;      ///< of the last world step, summed over all cloth, also where
+                                  ///< bodies were stepped at the same time
     std::vector<btGnnSolverMessage> messages;
 };
 
