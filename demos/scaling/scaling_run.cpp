@@ -5,13 +5,20 @@
 namespace cloth {
 namespace {
 
+/// Set-up and memory of each are measured while there is no other one: solvers of equal garments
+/// share what they can.
 std::vector<Contestant> make_contestants(const ComparisonScene& scene, const ClothState& start,
                                          const ScalingSettings& settings) {
+    const auto warm = [&](const std::string& name) {
+        return make_warm(scene, start, [&] { return make_solver(name, scene, settings.solver); });
+    };
     std::vector<Contestant> contestants;
-    for (const std::string& name : settings.solvers)
-        contestants.push_back({name, make_warm(scene, start, [&] {
-                                   return make_solver(name, scene, settings.solver);
-                               })});
+    for (const std::string& name : settings.solvers) {
+        contestants.push_back({name, warm(name)});
+        contestants.back().warm.stepper.reset();
+    }
+    for (Contestant& contestant : contestants)
+        contestant.warm.stepper = warm(contestant.name).stepper;
     return contestants;
 }
 

@@ -41,7 +41,8 @@ const char* const explanations =
     "  fine_rmse_mm         to the reference of 1/240 s, over the whole rollout\n"
     "  peak_memory_mb       highest resident memory while the solver was made and stepped\n"
     "                       twice, less that before; freed memory was given back first.\n"
-    "                       Libraries count for the solver that touched them first\n"
+    "                       Libraries, and factors that solvers of equal garments share, count\n"
+    "                       for the solver that had them first\n"
     "\n"
     "References are kept in DIR/parts for this commit; delete it after a change of the\n"
     "physics. Results are written after each scene.";
