@@ -42,13 +42,13 @@ static double max_depth(const VectorX& distance) {
 
 int push_out_rows(Proximity& proximity, const Boundary& boundary, double distance,
                   int max_iterations, std::vector<int>& rows, Points& x, SurfaceContacts& contacts,
-                  int* moved) {
+                  int* moved, const QueryLimits& limits) {
     int iterations = 0;
     keep_too_close(contacts, distance, rows);
     if (moved) *moved += static_cast<int>(rows.size());
     for (; !rows.empty() && iterations < max_iterations; ++iterations) {
         push_to_distance(contacts, distance, rows, x);
-        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end);
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end, limits);
         keep_too_close(contacts, distance, rows);
     }
     return iterations;
