@@ -16,7 +16,7 @@ enum class CacheStart { anew, go_on };
 ///
 ///     ResumedFile file("shirt.part.pc2", CacheStart::go_on);
 ///     file.write(header, "header");
-///     for (...) file.write(frame, "frame 7");
+///     for (const std::string& frame : frames) file.write(frame, "a frame");
 ///     file.commit("shirt.pc2");
 class ResumedFile {
  public:

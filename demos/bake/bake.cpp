@@ -40,6 +40,8 @@ std::vector<BakedMesh> open_caches(const BakeScene& scene, const BakeOptions& op
     const CacheStart start = options.resume ? CacheStart::go_on : CacheStart::anew;
     std::vector<BakedMesh> meshes;
     const auto open = [&](const std::string& path, const TriMesh& mesh) {
+        std::error_code ignored;  // the writer says that the folder is missing
+        fs::create_directories(fs::path(rest_file(path)).parent_path(), ignored);
         meshes.push_back({make_cache_writer(path, mesh, settings, start), nullptr});
         save_obj(rest_file(path), mesh);
     };
