@@ -51,7 +51,7 @@ void PointCacheReader::read_pc2_header(std::uintmax_t size) {
     m_header = 32;
     if (size < m_header) throw LoadError(m_path, "header", "the file ends too early", bake_again);
     const std::string header = read(0, 32, "header");
-    if (header.compare(0, 12, std::string("POINTCACHE2", 12)) != 0)
+    if (header.compare(0, 12, std::string("POINTCACHE2") + '\0') != 0)
         throw LoadError(m_path, "header", "it does not begin with POINTCACHE2",
                         "give a PC2 file; a Lightwave cache has a name that ends with .mdd");
     const auto version = number_at<std::int32_t>(&header[12], m_order);

@@ -21,7 +21,7 @@ void PointCacheWriter::write(int frame, const Points& x) {
 Pc2Writer::Pc2Writer(const std::string& path, Eigen::Index vertices, const CacheSettings& settings,
                      CacheStart start)
     : PointCacheWriter(path, vertices, settings, start, ByteOrder::little) {
-    std::string header("POINTCACHE2", 12);  // the zero byte, too
+    std::string header = std::string("POINTCACHE2") + '\0';
     append_number(header, std::int32_t{1}, ByteOrder::little);
     append_number(header, static_cast<std::int32_t>(vertices), ByteOrder::little);
     append_number(header, 0.0f, ByteOrder::little);
