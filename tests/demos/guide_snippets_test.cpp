@@ -9,7 +9,10 @@
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
+#include "data/files/cache_writer.h"
 #include "data/files/garment_assets.h"
+#include "data/files/mesh_io.h"
+#include "data/files/point_cache_reader.h"
 #include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
@@ -113,6 +116,30 @@ TEST_F(GuideSnippets, Wardrobe) {
     cloth::ClothState state = cloth::load_garment_start("pants_1000");
     EXPECT_EQ(state.x.rows(), pants.vertex_count());
     EXPECT_NE(state.x, pants.rest().vertices);
+}
+
+TEST_F(GuideSnippets, Cache) {
+    constexpr int frames = 3;
+    const std::string folder = testing::TempDir();
+    const std::string file = folder + "/guide_cache.pc2", rest_file = folder + "/guide_rest.obj";
+    const cloth::Garment shirt = cloth::load_garment("tshirt_1000");
+    btSoftBody* node_by_node = cloth::createGarmentSoftBody(world.info(), shirt);
+    world.add(node_by_node);
+    solver.attach(node_by_node, shirt);
+    cloth::save_obj(rest_file, shirt.rest());
+    const auto cache = cloth::make_cache_writer(file, shirt.rest(), {/*rate=*/30, frames});
+    cloth::ClothState state = cloth::ClothState::at_rest(shirt);
+    for (int frame = 0; frame < frames; ++frame) {
+        cloth::storeState(*node_by_node, state);
+        cache->add(state.x);
+        world->stepSimulation(1.0f / 30, 0);
+    }
+    cache->finish();
+    cloth::PointCacheReader read(file);
+    EXPECT_EQ(read.frames(), frames);
+    EXPECT_GT(read.frame(0).col(1).mean(), read.frame(2).col(1).mean()) << "it falls";
+    std::remove(file.c_str());
+    std::remove(rest_file.c_str());
 }
 
 TEST_F(GuideSnippets, TimeLimit) {
