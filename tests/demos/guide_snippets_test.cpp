@@ -6,6 +6,7 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
+#include "collision/response/embedded_mesh.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
@@ -61,6 +62,26 @@ TEST_F(GuideSnippets, Limbs) {
     expect_stepped();
     solver.removeAnimatedObstacle(&person);
     world->removeRigidBody(&person);
+}
+
+TEST_F(GuideSnippets, AFineMeshFollowsTheSoftBody) {
+    expect_stepped();
+    const cloth::TriMesh fine = solver.garmentOf(body)->rest();
+    const cloth::TriMesh skin = cloth::load_garment_mesh("tshirt_1000");
+    const auto faces = std::make_shared<const cloth::Faces>(skin.faces);
+    const cloth::Points x1 = skin.vertices;
+    // Once: the garment as it is simulated, and the mesh to be drawn.
+    cloth::EmbeddedMesh drawn(solver.garmentOf(body)->rest(), fine);
+    // After each step: the skin as it is drawn, too, and the nodes.
+    cloth::Obstacle person;
+    person.faces = faces;
+    person.x0 = person.x1 = x1;
+    cloth::Boundary outside;
+    outside.obstacles = {person};
+    cloth::ClothState shown;
+    cloth::storeState(*body, shown);
+    drawn.follow(shown.x, outside, solver.stepperOf(body)->ignored_limbs());
+    EXPECT_LT((drawn.vertices() - shown.x).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST_F(GuideSnippets, PointsOfAnAnimationSystemOfYourOwn) {

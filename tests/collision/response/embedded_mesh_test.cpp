@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <string>
 
 #include "collision/proximity/brute_force.h"
 #include "data/core/errors.h"
+#include "data/files/garment_assets.h"
 #include "tests/test_meshes.h"
 
 namespace cloth::embedded_mesh_test {
@@ -87,6 +89,15 @@ TEST(EmbeddedMesh, FineVerticesPassOverTheLimbsOfTheVerticesAroundThem) {
     }
     EXPECT_GT(passed, 50);
     EXPECT_GT(pushed, 50);
+}
+
+TEST(EmbeddedMesh, TheWardrobesFineGarmentsFitTheirCoarseOnes) {
+    for (const char* name : {"tshirt", "long_top", "skirt", "dress"}) {
+        const TriMesh coarse = load_garment_mesh(std::string(name) + "_1000");
+        const EmbeddedMesh mesh(coarse, load_garment_mesh(name));
+        EXPECT_GT(mesh.vertices().rows(), 2 * coarse.vertices.rows()) << name;
+        EXPECT_LT(mesh.embedding().farthest(), 0.01) << name;
+    }
 }
 
 TEST(EmbeddedMesh, EqualBitsForAnyNumberOfThreads) {
