@@ -2,6 +2,7 @@
 
 #include <malloc.h>
 
+#include <chrono>
 #include <limits>
 
 #include "demos/compare/json_numbers.h"
@@ -82,11 +83,15 @@ WarmStepper make_warm(const ComparisonScene& scene, const ClothState& start,
     malloc_trim(0);
     const double before = resident_memory_mb();
     reset_peak_memory();
+    const Boundary boundary = scene.frame_boundary(0);
+    const auto begin = std::chrono::steady_clock::now();
     WarmStepper warm;
     warm.stepper = make();
     for (int k = 0; k < 2; ++k) {
         ClothState copy = start;
-        warm.stepper->step(scene.frame_boundary(0), scene.frame_time(), copy);
+        warm.stepper->step(boundary, scene.frame_time(), copy);
+        const auto time = std::chrono::steady_clock::now() - begin;
+        if (k == 0) warm.setup_ms = std::chrono::duration<double, std::milli>(time).count();
     }
     warm.memory_mb = peak_memory_mb() - before;
     return warm;

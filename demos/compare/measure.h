@@ -17,10 +17,11 @@ struct Measurement {
     Trajectory trajectory;
 };
 
-/// A solver, ready to be timed, and the memory (MB) that it took.
+/// A solver, ready to be timed, and what it took to get there.
 struct WarmStepper {
     std::unique_ptr<Stepper> stepper;
     double memory_mb = 0.0;
+    double setup_ms = 0.0;  ///< until its first step was done
 };
 
 /// Makes a solver and lets it step twice: first steps allocate and fill caches, which is not what a

@@ -12,6 +12,11 @@ static ClothStepperSettings many_iterations(int iterations, double tolerance) {
 
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress) {
     ClothStepper stepper(scene.garment(), many_iterations(60, 1e-3));
+    return settle(scene, stepper, progress);
+}
+
+ClothState settle(const ComparisonScene& scene, Stepper& stepper,
+                  const ProgressFunction& progress) {
     ClothState state = scene.start();
     const double dt = scene.frame_time();
     const int steps = scene.lead_in_frames();

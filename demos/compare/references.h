@@ -5,6 +5,7 @@
 
 #include "demos/compare/comparison_scene.h"
 #include "demos/compare/trajectory.h"
+#include "gnn/stepper.h"
 
 namespace cloth {
 
@@ -19,6 +20,8 @@ using ProgressFunction = std::function<void(int, int, const std::string&)>;
 
 /// The state in which all solvers start: the garment after the lead-in.
 ClothState settle(const ComparisonScene& scene, const ProgressFunction& progress);
+/// The same as a solver of one's own has it.
+ClothState settle(const ComparisonScene& scene, Stepper& stepper, const ProgressFunction& progress);
 
 /// Converged steps of the frame's length.
 /// @param begun  the states so far, the start at least; gets as many as `frames` need

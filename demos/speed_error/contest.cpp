@@ -3,7 +3,6 @@
 #include <limits>
 
 namespace cloth {
-namespace {
 
 std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& start,
                               const References& references,
@@ -23,6 +22,8 @@ std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& st
     for (const RolloutMeter& meter : meters) rollouts.push_back(meter.rollout());
     return rollouts;
 }
+
+namespace {
 
 Points single_step(const ClothState& before, const Boundary& boundary, double dt,
                    Stepper& stepper) {

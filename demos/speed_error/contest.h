@@ -21,8 +21,15 @@ struct ContestResult {
 };
 
 /// Lets all solvers take turns: frame by frame each advances its own rollout, so that all meet the
-/// same machine; then frame by frame each makes a single step from the reference's state. A solver
-/// whose rollout stops being finite leaves the first part, the others go on.
+/// same machine. A solver whose rollout stops being finite leaves, the others go on.
+/// @param references  may be empty: there are no errors then
+/// @return one rollout per contestant, in order
+std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& start,
+                              const References& references,
+                              const std::vector<Contestant>& contestants,
+                              const ProgressFunction& progress);
+
+/// roll_out(), then frame by frame each makes a single step from the reference's state.
 /// @return one result per contestant, in order
 std::vector<ContestResult> run_contest(const ComparisonScene& scene, const ClothState& start,
                                        const References& references,

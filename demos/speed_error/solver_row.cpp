@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 #include "demos/compare/json_numbers.h"
 #include "demos/compare/statistics.h"
@@ -19,13 +18,6 @@ double median_ratio(const std::vector<double>& times, const std::vector<double>&
     for (size_t frame = 0; frame < std::min(times.size(), others.size()); ++frame)
         ratios.push_back(times[frame] / others[frame]);
     return median(ratios);
-}
-
-/// Six digits, which is more than any figure here is worth; null for NaN.
-ordered_json rounded(double value) {
-    if (value == 0.0 || !std::isfinite(value)) return json_number(value);
-    const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
-    return std::round(value * scale) / scale;
 }
 
 std::string six_digits(double value) {
@@ -85,18 +77,18 @@ ordered_json to_json(const SolverRow& row) {
         network && row.network->refine ? ordered_json(*row.network->refine) : ordered_json();
     json["threads"] = row.threads;
     json["frames"] = row.frames;
-    json["ms_median"] = rounded(row.ms_median);
-    json["ms_p95"] = rounded(row.ms_p95);
-    json["ms_longest"] = rounded(row.ms_longest);
-    json["ms_ratio"] = rounded(row.ms_ratio);
-    json["gap_median"] = rounded(row.gap_median);
-    json["progress_median"] = rounded(row.progress_median);
-    json["rmse_mm"] = rounded(row.rmse_mm);
-    json["rollout_rmse_mm"] = rounded(row.rollout_rmse_mm);
-    json["fine_rmse_mm"] = rounded(row.fine_rmse_mm);
-    json["stretch_p99"] = rounded(row.stretch_p99);
-    json["penetration_max_mm"] = rounded(row.penetration_max_mm);
-    json["peak_memory_mb"] = rounded(row.peak_memory_mb);
+    json["ms_median"] = rounded_number(row.ms_median);
+    json["ms_p95"] = rounded_number(row.ms_p95);
+    json["ms_longest"] = rounded_number(row.ms_longest);
+    json["ms_ratio"] = rounded_number(row.ms_ratio);
+    json["gap_median"] = rounded_number(row.gap_median);
+    json["progress_median"] = rounded_number(row.progress_median);
+    json["rmse_mm"] = rounded_number(row.rmse_mm);
+    json["rollout_rmse_mm"] = rounded_number(row.rollout_rmse_mm);
+    json["fine_rmse_mm"] = rounded_number(row.fine_rmse_mm);
+    json["stretch_p99"] = rounded_number(row.stretch_p99);
+    json["penetration_max_mm"] = rounded_number(row.penetration_max_mm);
+    json["peak_memory_mb"] = rounded_number(row.peak_memory_mb);
     json["finite"] = row.finite;
     json["first_failed_frame"] = failed ? ordered_json(*row.first_failed_frame) : ordered_json();
     json["failure"] = failed ? ordered_json(row.failure) : ordered_json();
