@@ -1,7 +1,6 @@
 #include "collision/response/embedded_mesh.h"
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include "data/core/check_range.h"
@@ -18,10 +17,6 @@ const EmbeddedMeshSettings& checked(const EmbeddedMeshSettings& settings) {
     return settings;
 }
 
-double depth_of(const SurfaceContacts& contacts) {
-    return contacts.distance.size() > 0 ? std::max(0.0, -contacts.distance.minCoeff()) : 0.0;
-}
-
 }  // namespace
 
 EmbeddedMesh::EmbeddedMesh(const TriMesh& simulated, const TriMesh& fine,
@@ -30,9 +25,7 @@ EmbeddedMesh::EmbeddedMesh(const TriMesh& simulated, const TriMesh& fine,
       m_embedding(simulated, fine, settings.embedding),
       m_faces(fine.faces),
       m_proximity({settings.deepest, settings.threads}),
-      m_all(static_cast<size_t>(fine.vertices.rows())),
       m_x(fine.vertices) {
-    std::iota(m_all.begin(), m_all.end(), 0);
 }
 
 /// Passing over a limb too many shows cloth inside it, where the simulated cloth is, too. One too
@@ -41,7 +34,7 @@ void EmbeddedMesh::take_ignored(const std::vector<LimbSet>& ignored) {
     m_ignored.clear();
     if (ignored.size() != static_cast<size_t>(m_embedding.coarse_size())) return;
     if (std::all_of(ignored.begin(), ignored.end(), [](LimbSet set) { return set == 0; })) return;
-    m_ignored.assign(m_all.size(), 0);
+    m_ignored.assign(static_cast<size_t>(m_embedding.size()), 0);
     for (Eigen::Index i = 0; i < m_embedding.size(); ++i)
         for (const int corner : m_embedding.corners(i))
             m_ignored[static_cast<size_t>(i)] |= ignored[static_cast<size_t>(corner)];
@@ -49,22 +42,14 @@ void EmbeddedMesh::take_ignored(const std::vector<LimbSet>& ignored) {
 
 ResolveReport EmbeddedMesh::follow(const Points& simulated, const Boundary& boundary,
                                    const std::vector<LimbSet>& ignored) {
-    ResolveReport report;
     m_embedding.positions(simulated, m_next);
-    if (!m_next.allFinite()) return report;
+    if (!m_next.allFinite()) return {};
     std::swap(m_x, m_next);
-    if (boundary.obstacles.empty()) return report;
     take_ignored(ignored);
     QueryLimits limits;
-    static const std::vector<LimbSet> none;
-    limits.ignored = m_ignored.empty() ? &none : &m_ignored;
-    m_proximity.query(m_x, boundary, m_contacts, StepEnd::end, limits);
-    report.max_depth_before = depth_of(m_contacts);
-    m_rows = m_all;
-    report.iterations = push_out_rows(m_proximity, boundary, m_settings.distance, kPushes, m_rows,
-                                      m_x, m_contacts, &report.moved, limits);
-    report.max_depth_after = depth_of(m_contacts);
-    return report;
+    limits.ignored = &m_ignored;
+    return resolve_penetration(m_proximity, boundary, m_settings.distance, m_x, m_contacts, kPushes,
+                               limits);
 }
 
 }  // namespace cloth

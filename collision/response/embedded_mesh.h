@@ -36,7 +36,7 @@ class EmbeddedMesh {
     /// of the step. Where they are not finite it stays as it was.
     /// @param ignored  limbs that each simulated vertex ignores (|V|), see
     ///                 Stepper::ignored_limbs(), or empty. A fine vertex ignores those of the
-    ///                 vertices around it
+    ///                 vertices around it; Boundary::ignored_limbs does not count
     /// @throws ArgumentError if the number of vertices is not that of the simulated mesh
     ResolveReport follow(const Points& simulated, const Boundary& boundary,
                          const std::vector<LimbSet>& ignored = {});
@@ -55,7 +55,6 @@ class EmbeddedMesh {
     Faces m_faces;
     Proximity m_proximity;
     SurfaceContacts m_contacts;
-    std::vector<int> m_all, m_rows;
     std::vector<LimbSet> m_ignored;  ///< N, or empty
     Points m_x, m_next;
 };

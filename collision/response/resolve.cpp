@@ -55,15 +55,16 @@ int push_out_rows(Proximity& proximity, const Boundary& boundary, double distanc
 }
 
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, SurfaceContacts& contacts, int max_iterations) {
+                                  Points& x, SurfaceContacts& contacts, int max_iterations,
+                                  const QueryLimits& limits) {
     ResolveReport report;
     if (boundary.obstacles.empty()) return report;
-    proximity.query(x, boundary, contacts, StepEnd::end);
+    proximity.query(x, boundary, contacts, StepEnd::end, limits);
     report.max_depth_before = max_depth(contacts.distance);
     std::vector<int> rows(static_cast<size_t>(x.rows()));
     std::iota(rows.begin(), rows.end(), 0);
     report.iterations = push_out_rows(proximity, boundary, distance, max_iterations, rows, x,
-                                      contacts, &report.moved);
+                                      contacts, &report.moved, limits);
     report.max_depth_after = max_depth(contacts.distance);
     return report;
 }

@@ -45,8 +45,10 @@ int push_out_rows(Proximity& proximity, const Boundary& boundary, double distanc
 ///
 /// @param contacts  the nearest points of the resulting `x`, chosen at t + dt (without obstacles it
 ///                  is left as it is); a caller that keeps it saves allocations
+/// @param limits    of the queries
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, SurfaceContacts& contacts, int max_iterations = 3);
+                                  Points& x, SurfaceContacts& contacts, int max_iterations = 3,
+                                  const QueryLimits& limits = {});
 
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
                                   Points& x, int max_iterations = 3);
