@@ -18,12 +18,13 @@
 #include "bullet_ext/garmentSoftBody.h"
 #include "data/body/garment_fit.h"
 #include "data/body/skin_binding.h"
-#include "data/body/skinned_character.h"
+#include "data/body/welded_character.h"
 #include "data/core/check_range.h"
 #include "data/core/paths.h"
 #include "data/core/surface_distance.h"
 #include "data/core/weld.h"
 #include "data/files/mesh_io.h"
+#include "demos/dressing_checks.h"
 #include "gnn/model/make_cloth.h"
 
 namespace {
@@ -43,53 +44,13 @@ struct Outcome {
     long failed = 0;
 };
 
-/// A character's skin as one surface: parts and texture seams that the file splits are joined.
-class Skin {
- public:
-    Skin(const std::string& file, const cloth::CharacterSettings& settings, double tolerance)
-        : m_character(file, settings),
-          m_rest(cloth::weld_mesh({m_character.rest_vertices(), *m_character.faces()}, tolerance)),
-          m_faces(std::make_shared<const cloth::Faces>(m_rest.mesh.faces)) {}
-
-    const cloth::TriMesh& rest() const { return m_rest.mesh; }
-    std::shared_ptr<const cloth::Faces> faces() const { return m_faces; }
-    double duration() const { return m_character.duration(); }
-    cloth::Points at(double time) const {
-        return m_character.vertices(time)(m_rest.kept, Eigen::all);
-    }
-    double height() const {
-        return rest().vertices.col(1).maxCoeff() - rest().vertices.col(1).minCoeff();
-    }
-
- private:
-    cloth::SkinnedCharacter m_character;
-    cloth::WeldedMesh m_rest;
-    std::shared_ptr<const cloth::Faces> m_faces;
-};
-
-Skin load_skin(const Options& options) {
-    Skin skin(options.character, options.skin, options.weld);
-    if (skin.height() < 0.1 || skin.height() > 10.0)
-        throw cloth::ArgumentError(options.character,
-                                   "it is " + std::to_string(skin.height()) + " m high",
-                                   "give --character-scale, such as 0.01 for centimetres");
+cloth::WeldedCharacter load_skin(const Options& options) {
+    cloth::WeldedCharacter skin(options.character, options.skin, options.weld);
+    cloth::check_height(options.character, skin);
     std::printf("character  %s: %d vertices, %.2f m high, animation of %.2f s\n",
                 options.character.c_str(), static_cast<int>(skin.rest().vertices.rows()),
                 skin.height(), skin.duration());
     return skin;
-}
-
-std::vector<int> vertices_between(const cloth::Points& x, const std::vector<double>& heights) {
-    std::vector<int> found;
-    for (int i = 0; i < x.rows() && !heights.empty(); ++i)
-        if (x(i, 1) >= heights[0] && x(i, 1) <= heights[1]) found.push_back(i);
-    if (found.empty() && !heights.empty())
-        throw cloth::ArgumentError("--pin",
-                                   "the garment, from " + std::to_string(x.col(1).minCoeff()) +
-                                       " to " + std::to_string(x.col(1).maxCoeff()) +
-                                       " m, has no vertex there",
-                                   "give the lowest and highest height in metres, after scaling");
-    return found;
 }
 
 cloth::Garment load_garment(const Options& options) {
@@ -99,7 +60,7 @@ cloth::Garment load_garment(const Options& options) {
     const cloth::Fabric fabric =
         options.fabric == "real" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
     cloth::Garment garment("garment", welded.mesh, fabric,
-                           vertices_between(welded.mesh.vertices, options.pin));
+                           cloth::vertices_between(welded.mesh.vertices, options.pin));
     std::printf(
         "garment    %s: %d vertices (%d near ones joined), edges of %.0f mm, %.0f g, %d pinned\n",
         options.garment.c_str(), static_cast<int>(garment.vertex_count()), welded.merged,
@@ -109,17 +70,13 @@ cloth::Garment load_garment(const Options& options) {
 }
 
 /// The garment on the first pose of the animation, clear of the skin.
-cloth::ClothState dress(const cloth::Garment& garment, const Skin& skin, double clearance) {
-    const double away =
-        cloth::smallest_clearance(garment.rest(), cloth::SurfaceDistance(skin.rest()));
-    if (away > 0.3)
-        throw cloth::ArgumentError("garment", "it is " + std::to_string(away) + " m from the skin",
-                                   "check --garment-scale, and that garment and character have the "
-                                   "same origin and axes");
+cloth::ClothState dress(const cloth::Garment& garment, const cloth::WeldedCharacter& skin,
+                        double clearance) {
+    const double away = cloth::distance_to_skin(garment, skin);
     cloth::GarmentFitSettings settings;
     settings.clearance = clearance;
     cloth::ClothState start = cloth::ClothState::at_rest(garment);
-    start.x = cloth::fit_garment(garment.rest(), skin.rest(), skin.at(0.0), settings);
+    start.x = cloth::fit_garment(garment.rest(), skin.rest(), skin.vertices(0.0), settings);
     std::printf("fit        as modelled %.1f mm from the skin, now %.1f mm or more\n", 1e3 * away,
                 1e3 * clearance);
     return start;
@@ -158,8 +115,8 @@ void save_end(const std::string& folder, const cloth::Garment& garment, const bt
     cloth::save_obj(folder + "/character.obj", skin);
 }
 
-Outcome run(const Options& options, const Skin& skin, const cloth::Garment& garment,
-            const cloth::ClothState& start) {
+Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
+            const cloth::Garment& garment, const cloth::ClothState& start) {
     btGnnSoftBodySolver solver = make_solver(options.solver);
     btSoftBodyRigidBodyCollisionConfiguration config;
     btCollisionDispatcher dispatcher(&config);
@@ -180,7 +137,7 @@ Outcome run(const Options& options, const Skin& skin, const cloth::Garment& garm
 
     // Pinned vertices ride on the skin.
     const std::vector<int>& pins = garment.pins();
-    const cloth::SkinBinding band({skin.at(0.0), *skin.faces()}, start.x(pins, Eigen::all));
+    const cloth::SkinBinding band({skin.vertices(0.0), *skin.faces()}, start.x(pins, Eigen::all));
 
     constexpr double dt = 1.0 / 30.0;
     const double end = options.settle + (options.seconds > 0 ? options.seconds : skin.duration());
@@ -189,8 +146,9 @@ Outcome run(const Options& options, const Skin& skin, const cloth::Garment& garm
         // The first pose is held for a while, so that the cloth comes to hang.
         const double now = std::max(0.0, frame * dt - options.settle);
         const double next = std::max(0.0, (frame + 1) * dt - options.settle);
-        solver.setAnimatedObstacle(&person, skin.faces(), skin.at(now), skin.at(next), dt);
-        const cloth::Points places = band.positions(skin.at(next));
+        solver.setAnimatedObstacle(&person, skin.faces(), skin.vertices(now), skin.vertices(next),
+                                   dt);
+        const cloth::Points places = band.positions(skin.vertices(next));
         for (size_t p = 0; p < pins.size(); ++p) {
             const auto row = static_cast<Eigen::Index>(p);
             cloth->m_nodes[pins[p]].m_x.setValue(static_cast<float>(places(row, 0)),
@@ -202,7 +160,7 @@ Outcome run(const Options& options, const Skin& skin, const cloth::Garment& garm
         outcome.deepest = std::max(outcome.deepest, outcome.inside);
     }
     outcome.failed = solver.status().failedSteps + (solver.status().clothBodies == 1 ? 0 : 1);
-    const cloth::TriMesh last{skin.at(end - options.settle), *skin.faces()};
+    const cloth::TriMesh last{skin.vertices(end - options.settle), *skin.faces()};
     measure(garment, *cloth, last, outcome);
     for (const btGnnSolverMessage& message : solver.status().messages)
         std::printf("%s\n", message.text.c_str());
@@ -262,7 +220,7 @@ int main(int argc, char** argv) try {
     Options options;
     const int done = read_options(argc, argv, options);
     if (done >= 0) return done;
-    const Skin skin = load_skin(options);
+    const cloth::WeldedCharacter skin = load_skin(options);
     const cloth::Garment garment = load_garment(options);
     const cloth::ClothState start = dress(garment, skin, options.clearance);
     const Outcome outcome = run(options, skin, garment, start);

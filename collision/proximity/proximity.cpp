@@ -405,11 +405,11 @@ int Proximity::cached_meshes() const {
 }
 
 void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
-                      StepEnd chosen_at) {
+                      StepEnd chosen_at, const QueryLimits& limits) {
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(
-        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
+        x, nullptr, limits.ignored ? *limits.ignored : boundary.ignored_limbs, limits.radius,
         [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
 }
 

@@ -46,7 +46,7 @@ struct ProximitySettings {
     int threads = 0;      ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
 };
 
-/// What a query of some rows leaves out.
+/// What a query leaves out.
 struct QueryLimits {
     const std::vector<LimbSet>* ignored = nullptr;  ///< limbs that each row passes over; null:
                                                     ///< Boundary::ignored_limbs, if it fits
@@ -93,7 +93,7 @@ class Proximity {
     /// Nearest points at t of the points `x` (|V| x 3, m), carried to t + dt.
     /// @param chosen_at  end: nearest points at t + dt, carried back to t
     void query(const Points& x, const Boundary& boundary, SurfaceContacts& contacts,
-               StepEnd chosen_at = StepEnd::start);
+               StepEnd chosen_at = StepEnd::start, const QueryLimits& limits = {});
 
     /// Repeats a query for some rows of `x` only (ascending or not, each at most once); the other
     /// rows of `contacts`, which has |V| rows from a query before, are left as they are.

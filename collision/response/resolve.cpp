@@ -42,28 +42,29 @@ static double max_depth(const VectorX& distance) {
 
 int push_out_rows(Proximity& proximity, const Boundary& boundary, double distance,
                   int max_iterations, std::vector<int>& rows, Points& x, SurfaceContacts& contacts,
-                  int* moved) {
+                  int* moved, const QueryLimits& limits) {
     int iterations = 0;
     keep_too_close(contacts, distance, rows);
     if (moved) *moved += static_cast<int>(rows.size());
     for (; !rows.empty() && iterations < max_iterations; ++iterations) {
         push_to_distance(contacts, distance, rows, x);
-        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end);
+        proximity.query_rows(x, rows, boundary, contacts, StepEnd::end, limits);
         keep_too_close(contacts, distance, rows);
     }
     return iterations;
 }
 
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, SurfaceContacts& contacts, int max_iterations) {
+                                  Points& x, SurfaceContacts& contacts, int max_iterations,
+                                  const QueryLimits& limits) {
     ResolveReport report;
     if (boundary.obstacles.empty()) return report;
-    proximity.query(x, boundary, contacts, StepEnd::end);
+    proximity.query(x, boundary, contacts, StepEnd::end, limits);
     report.max_depth_before = max_depth(contacts.distance);
     std::vector<int> rows(static_cast<size_t>(x.rows()));
     std::iota(rows.begin(), rows.end(), 0);
     report.iterations = push_out_rows(proximity, boundary, distance, max_iterations, rows, x,
-                                      contacts, &report.moved);
+                                      contacts, &report.moved, limits);
     report.max_depth_after = max_depth(contacts.distance);
     return report;
 }

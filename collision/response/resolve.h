@@ -33,9 +33,10 @@ struct ResolveReport {
 /// resolve_penetration() does. Returns the iterations; `rows` keeps those that are still closer.
 /// @param contacts  the nearest points of `x`, chosen at t + dt, and of the result
 /// @param moved     if not null, grows by the number of vertices that were closer
+/// @param limits    of the queries that look again
 int push_out_rows(Proximity& proximity, const Boundary& boundary, double distance,
                   int max_iterations, std::vector<int>& rows, Points& x, SurfaceContacts& contacts,
-                  int* moved = nullptr);
+                  int* moved = nullptr, const QueryLimits& limits = {});
 
 /// Contact projection of a step: queries the surfaces at t + dt and moves every vertex that is
 /// closer than `distance` (m, small: 0 to 1e-3) to that distance from its closest point, again if
@@ -44,8 +45,10 @@ int push_out_rows(Proximity& proximity, const Boundary& boundary, double distanc
 ///
 /// @param contacts  the nearest points of the resulting `x`, chosen at t + dt (without obstacles it
 ///                  is left as it is); a caller that keeps it saves allocations
+/// @param limits    of the queries
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
-                                  Points& x, SurfaceContacts& contacts, int max_iterations = 3);
+                                  Points& x, SurfaceContacts& contacts, int max_iterations = 3,
+                                  const QueryLimits& limits = {});
 
 ResolveReport resolve_penetration(Proximity& proximity, const Boundary& boundary, double distance,
                                   Points& x, int max_iterations = 3);

@@ -6,10 +6,14 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
+#include "collision/response/embedded_mesh.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
+#include "data/files/cache_writer.h"
 #include "data/files/garment_assets.h"
+#include "data/files/mesh_io.h"
+#include "data/files/point_cache_reader.h"
 #include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
@@ -58,6 +62,26 @@ TEST_F(GuideSnippets, Limbs) {
     expect_stepped();
     solver.removeAnimatedObstacle(&person);
     world->removeRigidBody(&person);
+}
+
+TEST_F(GuideSnippets, AFineMeshFollowsTheSoftBody) {
+    expect_stepped();
+    const cloth::TriMesh fine = solver.garmentOf(body)->rest();
+    const cloth::TriMesh skin = cloth::load_garment_mesh("tshirt_1000");
+    const auto faces = std::make_shared<const cloth::Faces>(skin.faces);
+    const cloth::Points x1 = skin.vertices;
+    // Once: the garment as it is simulated, and the mesh to be drawn.
+    cloth::EmbeddedMesh drawn(solver.garmentOf(body)->rest(), fine);
+    // After each step: the skin as it is drawn, too, and the nodes.
+    cloth::Obstacle person;
+    person.faces = faces;
+    person.x0 = person.x1 = x1;
+    cloth::Boundary outside;
+    outside.obstacles = {person};
+    cloth::ClothState shown;
+    cloth::storeState(*body, shown);
+    drawn.follow(shown.x, outside, solver.stepperOf(body)->ignored_limbs());
+    EXPECT_LT((drawn.vertices() - shown.x).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST_F(GuideSnippets, PointsOfAnAnimationSystemOfYourOwn) {
@@ -113,6 +137,30 @@ TEST_F(GuideSnippets, Wardrobe) {
     cloth::ClothState state = cloth::load_garment_start("pants_1000");
     EXPECT_EQ(state.x.rows(), pants.vertex_count());
     EXPECT_NE(state.x, pants.rest().vertices);
+}
+
+TEST_F(GuideSnippets, Cache) {
+    constexpr int frames = 3;
+    const std::string folder = testing::TempDir();
+    const std::string file = folder + "/guide_cache.pc2", rest_file = folder + "/guide_rest.obj";
+    const cloth::Garment shirt = cloth::load_garment("tshirt_1000");
+    btSoftBody* node_by_node = cloth::createGarmentSoftBody(world.info(), shirt);
+    world.add(node_by_node);
+    solver.attach(node_by_node, shirt);
+    cloth::save_obj(rest_file, shirt.rest());
+    const auto cache = cloth::make_cache_writer(file, shirt.rest(), {/*rate=*/30, frames});
+    cloth::ClothState state = cloth::ClothState::at_rest(shirt);
+    for (int frame = 0; frame < frames; ++frame) {
+        cloth::storeState(*node_by_node, state);
+        cache->add(state.x);
+        world->stepSimulation(1.0f / 30, 0);
+    }
+    cache->finish();
+    cloth::PointCacheReader read(file);
+    EXPECT_EQ(read.frames(), frames);
+    EXPECT_GT(read.frame(0).col(1).mean(), read.frame(2).col(1).mean()) << "it falls";
+    std::remove(file.c_str());
+    std::remove(rest_file.c_str());
 }
 
 TEST_F(GuideSnippets, TimeLimit) {

@@ -14,6 +14,7 @@
 #include "data/body/rig_recipe.h"
 #include "data/core/errors.h"
 #include "data/files/mesh_io.h"
+#include "data/files/point_cache_reader.h"
 #include "gnn/model/weights.h"
 #include "tests/fuzz/file_fuzzing.h"
 #include "tests/fuzz/sample_files.h"
@@ -71,6 +72,16 @@ std::string check_motion(const std::string& path) {
         if (!frame.root_position.allFinite()) return "the root is not finite";
         for (const Eigen::Quaterniond& rotation : frame.rotations)
             if (!(std::abs(rotation.norm() - 1.0) < 1e-6)) return "a rotation is not one";
+    }
+    return "";
+}
+
+std::string check_point_cache(const std::string& path) {
+    PointCacheReader cache(path);
+    if (cache.frames() < 1 || cache.frames() > cache.announced_frames()) return "no such frames";
+    for (int k = 0; k < cache.frames(); ++k) {
+        const Points x = cache.frame(k);
+        if (x.rows() != cache.vertices() || !x.allFinite()) return "a frame is unusable";
     }
     return "";
 }
@@ -177,6 +188,14 @@ TEST(LoadersFuzz, CharacterOfCollada) {
 
 TEST(LoadersFuzz, Bvh) {
     fuzz_files({"bvh", bvh_file(), check_motion});
+}
+
+TEST(LoadersFuzz, Pc2) {
+    fuzz_files({"pc2", pc2_file(), check_point_cache});
+}
+
+TEST(LoadersFuzz, Mdd) {
+    fuzz_files({"mdd", mdd_file(), check_point_cache});
 }
 
 TEST(LoadersFuzz, Weights) {

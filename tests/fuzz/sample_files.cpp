@@ -67,6 +67,31 @@ std::string binary_ply_file(bool big_endian) {
 
 namespace {
 
+std::string cache_frames(bool big_endian) {
+    std::string bytes;
+    for (int i = 0; i < 3 * 2 * 3; ++i) append(bytes, 0.25f * static_cast<float>(i), big_endian);
+    return bytes;
+}
+
+}  // namespace
+
+std::string pc2_file() {
+    std::string bytes("POINTCACHE2", 12);
+    for (const std::int32_t count : {1, 2}) append(bytes, count);  // version, vertices
+    for (const float number : {0.0f, 1.0f}) append(bytes, number);
+    append(bytes, std::int32_t{3});
+    return bytes + cache_frames(false);
+}
+
+std::string mdd_file() {
+    std::string bytes;
+    for (const std::int32_t count : {3, 2}) append(bytes, count, true);  // frames, vertices
+    for (const float time : {0.0f, 0.04f, 0.08f}) append(bytes, time, true);
+    return bytes + cache_frames(true);
+}
+
+namespace {
+
 /// The numbers of the glTF file, view by view; every view starts at a multiple of four.
 struct GltfNumbers {
     std::string bytes;

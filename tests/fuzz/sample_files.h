@@ -13,6 +13,8 @@ std::string glb_file();      ///< the same, its numbers as a binary chunk
 std::string collada_file();  ///< centimetres, Z up, nested nodes, an animation
 /// The COLLADA file zipped (.zae), written to `path`.
 void write_zipped_collada(const std::string& path);
+std::string pc2_file();  ///< three frames of two vertices
+std::string mdd_file();
 std::string bvh_file();
 std::string garment_recipe_file();
 std::string rig_recipe_file();

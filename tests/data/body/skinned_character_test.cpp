@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "data/body/welded_character.h"
 #include "data/core/mesh.h"
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
@@ -140,6 +141,24 @@ TEST_F(CharacterFile, WhatIsMissingIsNamed) {
     expect_load_error([&] { SkinnedCharacter character(bison, settings); }, bison, "mesh Tail");
     const std::string duck = model_path("Collada/duck.dae");
     expect_load_error([&] { SkinnedCharacter character(duck); }, duck, "has no animation");
+}
+
+TEST(WeldedCharacter, IsTheSkinWithoutItsSeamsInEveryPose) {
+    const std::string file = model_path("X/BCN_Epileptic.X");
+    const SkinnedCharacter split(file);
+    const WeldedCharacter skin(file, {}, 1e-4);
+    EXPECT_LT(skin.rest().vertices.rows(), split.rest_vertices().rows());
+    EXPECT_EQ(*skin.faces(), skin.rest().faces);
+    EXPECT_LT(skin.faces()->maxCoeff(), skin.rest().vertices.rows());
+    EXPECT_DOUBLE_EQ(skin.duration(), split.duration());
+    EXPECT_NEAR(skin.height(), 1.8, 0.3);
+    for (const double time : {0.0, 0.2}) {
+        const Points welded = skin.vertices(time), all = split.vertices(time);
+        for (Eigen::Index i = 0; i < welded.rows(); i += 50)
+            EXPECT_EQ(distance_to_nearest(all, welded.row(i)), 0.0);
+        for (Eigen::Index i = 0; i < all.rows(); i += 50)
+            EXPECT_LT(distance_to_nearest(welded, all.row(i)), 1e-3);
+    }
 }
 
 }  // namespace cloth::skinned_character_test

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "demos/bake/options.h"
+#include "demos/compare/comparison_scene.h"
+
+namespace cloth {
+
+/// What is baked: a garment's scene, and the body in it.
+struct BakeScene {
+    std::shared_ptr<const ComparisonScene> cloth;
+    TriMesh body;                        ///< before any motion
+    std::function<Points(double)> skin;  ///< its vertices at a time of the scene's clock (s)
+
+    int frames() const { return cloth->frames() + 1; }  ///< the first pose, and one for each step
+};
+
+/// @throws LoadError, ArgumentError, UsageError if garment, body or motion cannot be had
+BakeScene make_bake_scene(const BakeOptions& options);
+
+}  // namespace cloth

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data/body/skin_binding.h"
+#include "data/body/welded_character.h"
+#include "demos/compare/comparison_scene.h"
+
+namespace cloth {
+
+/// A character file, a garment modelled on it, and how they come together.
+struct CharacterSceneSettings {
+    std::string character;  ///< its file
+    CharacterSettings skin;
+    std::string garment;         ///< its mesh file
+    double garment_scale = 1.0;  ///< metres per unit of the file, 1e-6 to 1e6
+    double weld = 1e-4;          ///< vertices as near as this become one (m), 0 to 0.01
+    double clearance = 4.5e-3;   ///< from skin to cloth at the start (m), 1e-3 to 0.05
+    std::vector<double> pin;     ///< lowest and highest vertex that rides on the skin (m), or empty
+    std::string fabric = "soft";  ///< see fabric_named()
+    double settle = 0.5;          ///< the first pose is held for so long (s), 0 to 60
+    int rate = 30;                ///< frames per second
+    int steps = 0;                ///< of the animation; 0: all
+};
+
+/// A garment on an animated character. The clock starts with the animation; in the lead-in the
+/// first pose is held and the garment comes to hang.
+class CharacterScene : public ComparisonScene {
+ public:
+    /// @throws LoadError, ArgumentError if character or garment cannot be had or do not fit
+    explicit CharacterScene(const CharacterSceneSettings& settings);
+
+    const TriMesh& rest_skin() const { return m_skin->rest(); }
+    /// Skin of the character at a time of the clock (|V| x 3, m).
+    Points skin(double time) const;
+
+    Boundary boundary(double t0, double t1) const override;
+    /// Fitted to the first pose.
+    ClothState start() const override { return m_start; }
+    int lead_in_frames() const override { return m_lead_in_frames; }
+
+ private:
+    CharacterScene(const CharacterSceneSettings& settings,
+                   std::shared_ptr<const WeldedCharacter> skin);
+
+    std::shared_ptr<const WeldedCharacter> m_skin;
+    ClothState m_start;
+    std::unique_ptr<const SkinBinding> m_band;
+    int m_lead_in_frames;
+};
+
+}  // namespace cloth

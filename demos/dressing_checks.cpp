@@ -1,0 +1,36 @@
+#include "demos/dressing_checks.h"
+
+#include "data/body/garment_fit.h"
+#include "data/core/errors.h"
+#include "data/core/surface_distance.h"
+
+namespace cloth {
+
+void check_height(const std::string& file, const WeldedCharacter& skin) {
+    if (skin.height() < 0.1 || skin.height() > 10.0)
+        throw ArgumentError(file, "it is " + std::to_string(skin.height()) + " m high",
+                            "give --character-scale, such as 0.01 for centimetres");
+}
+
+std::vector<int> vertices_between(const Points& x, const std::vector<double>& heights) {
+    std::vector<int> found;
+    for (int i = 0; i < x.rows() && !heights.empty(); ++i)
+        if (x(i, 1) >= heights[0] && x(i, 1) <= heights[1]) found.push_back(i);
+    if (found.empty() && !heights.empty())
+        throw ArgumentError("--pin",
+                            "the garment, from " + std::to_string(x.col(1).minCoeff()) + " to " +
+                                std::to_string(x.col(1).maxCoeff()) + " m, has no vertex there",
+                            "give the lowest and highest height in metres, after scaling");
+    return found;
+}
+
+double distance_to_skin(const Garment& garment, const WeldedCharacter& skin) {
+    const double away = smallest_clearance(garment.rest(), SurfaceDistance(skin.rest()));
+    if (away > 0.3)
+        throw ArgumentError("garment", "it is " + std::to_string(away) + " m from the skin",
+                            "check --garment-scale, and that garment and character have the same "
+                            "origin and axes");
+    return away;
+}
+
+}  // namespace cloth
