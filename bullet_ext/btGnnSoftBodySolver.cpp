@@ -343,7 +343,7 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
         const Stepped cloth{&body, &entry};
         const bool begun =
             entry.step->begin(static_cast<double>(solverdt), m_obstacles, m_settings.obstacleReach);
-        if (begun && m_settings.parallel && !limited && entry.step->movesNothing(m_obstacles))
+        if (begun && m_settings.parallel && !limited && entry.step->isIndependent(m_obstacles))
             together.push_back(cloth);
         else
             stepTogether({cloth});

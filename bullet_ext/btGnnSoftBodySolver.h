@@ -42,9 +42,9 @@ struct btGnnSolverSettings {
     double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
     int maxFailedSteps = 3;      ///< failures in a row after which Bullet steps it, 1 to 1000000
-    /// Bodies that no rigid body is pushed by are stepped at the same time, see solveSteps(): their
-    /// steppers must share nothing that serves one thread at a time, such as a cloth::Predictor.
-    /// False, or with maxMs: all are stepped one after the other.
+    /// Bodies that push no rigid body, and have independent steppers, are stepped at the same time,
+    /// see solveSteps() and cloth::Stepper::is_independent(). False, or with maxMs: all are stepped
+    /// one after the other.
     bool parallel = true;
     /// Time for all cloth in a world step (ms), 0.1 to infinity (no limit). Each body gets an equal
     /// share of what is left; its steppers must know limits, see cloth::Stepper::set_max_ms(). What

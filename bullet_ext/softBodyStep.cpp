@@ -78,7 +78,8 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     return m_begun = true;
 }
 
-bool SoftBodyStep::movesNothing(const BulletObstacles& obstacles) const {
+bool SoftBodyStep::isIndependent(const BulletObstacles& obstacles) const {
+    if (!m_stepper->is_independent()) return false;
     for (int a = 0; a < m_body.m_anchors.size(); ++a)
         if (isDynamic(*m_body.m_anchors[a].m_body)) return false;
     return !obstacles.anyDynamicNear(m_body, m_box.low, m_box.high);

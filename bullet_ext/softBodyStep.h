@@ -63,13 +63,13 @@ class SoftBodyStep {
     ///     }
     ///     const SoftBodyStep::Result result = step.end(obstacles);
     ///
-    /// solve() takes nearly all of the time, and several bodies may do it at the same time if their
-    /// steppers share nothing; the other functions change the world.
+    /// solve() takes nearly all of the time, and several bodies may do it at the same time if they
+    /// are independent; the other functions change the world.
     /// @return  false: nothing is to be stepped, as in a paused body
     bool begin(double h, BulletObstacles& obstacles, double reach);
-    /// Whether no body of the world can be moved by this cloth, so that the order in which it and
-    /// other cloth are stepped does not count.
-    bool movesNothing(const BulletObstacles& obstacles) const;
+    /// Whether the order in which this cloth and other independent cloth are stepped does not count:
+    /// the stepper is independent, and this cloth moves no body of the world.
+    bool isIndependent(const BulletObstacles& obstacles) const;
     /// The next cloth step; false: the cloth is past the end of the world step.
     bool beginClothStep(BulletObstacles& obstacles);
     void solve();

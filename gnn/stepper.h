@@ -93,6 +93,10 @@ class Stepper {
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
 
+    /// Whether step() may run while steps of other independent steppers do, in other threads:
+    /// nothing that it changes is theirs too.
+    virtual bool is_independent() const { return false; }
+
     /// Limits the time of each step from now on (ms, above 0; infinity: no limit). It ends
     /// iterations, cuts and searches early: what a step does then depends on how fast the machine
     /// is. `residual`, `gain` and `tunnelled` of its report say what was reached.

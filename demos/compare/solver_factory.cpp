@@ -101,6 +101,7 @@ class WithLimbs : public Stepper {
  public:
     explicit WithLimbs(std::unique_ptr<Stepper> inner) : m_inner(std::move(inner)) {}
     std::string name() const override { return m_inner->name(); }
+    bool is_independent() const override { return m_inner->is_independent(); }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
         return m_inner->step(m_limbs.filter(boundary, dt, state), dt, state);
     }

@@ -37,6 +37,7 @@ class Engine : public Predictor {
 
     const ModelConfig& config() const override;
     std::string name() const override { return m_weights->name(); }
+    bool is_independent() const override { return true; }
     void predict(const ClothGraph& graph, const Features& features, Points& out) override;
 
     EngineMemory memory() const;

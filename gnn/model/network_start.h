@@ -18,6 +18,10 @@ class NetworkStart : public StepStart {
     /// The network's, such as "small".
     std::string name() const override { return m_predictor->name(); }
     double fixed_dt() const override { return m_predictor->config().dt; }
+    /// If the predictor is, and nobody else holds it.
+    bool is_independent() const override {
+        return m_predictor.use_count() == 1 && m_predictor->is_independent();
+    }
     bool predict(const ClothState& state, const Boundary& boundary,
                  const IncrementalPotential& potential, const Points& guess,
                  PotentialValue& at_guess, Points& prediction, StageTimes& times) override;

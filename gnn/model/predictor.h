@@ -17,6 +17,10 @@ class Predictor {
     /// What solvers that use it are called.
     virtual std::string name() const { return config().variant; }
 
+    /// Whether predict() may run while other independent predictors do, in other threads: what it
+    /// changes is its own.
+    virtual bool is_independent() const { return false; }
+
     /// One evaluation. The predicted position of vertex i is base_i + scale * out_i.
     /// @param graph  of the garment, built with config().graph_settings()
     /// @param out    |V| x 3: scaled accelerations; not finite if the evaluation failed

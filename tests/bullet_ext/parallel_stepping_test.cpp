@@ -98,8 +98,10 @@ class Meeting : public Stepper {
         std::atomic<bool> met{false};
         std::chrono::milliseconds patience{20};
     };
-    explicit Meeting(std::shared_ptr<Place> place) : m_place(std::move(place)) {}
+    Meeting(std::shared_ptr<Place> place, bool independent)
+        : m_place(std::move(place)), m_independent(independent) {}
     std::string name() const override { return "meeting"; }
+    bool is_independent() const override { return m_independent; }
     StepReport step(const Boundary&, double dt, ClothState& state) override {
         const auto end = std::chrono::steady_clock::now() + m_place->patience;
         if (++m_place->present > 1) m_place->met = true;
@@ -111,15 +113,16 @@ class Meeting : public Stepper {
 
  private:
     std::shared_ptr<Place> m_place;
+    bool m_independent;
 };
 
 /// Whether steps of two patches are made at the same time.
-bool meet(const btGnnSolverSettings& settings, bool must) {
+bool meet(const btGnnSolverSettings& settings, bool must, bool independent = true) {
     const Threads threads(2);
     const auto place = std::make_shared<Meeting::Place>();
     if (must) place->patience = std::chrono::seconds(5);
-    btGnnSoftBodySolver solver([&](const Garment&) { return std::make_unique<Meeting>(place); },
-                               settings);
+    btGnnSoftBodySolver solver(
+        [&](const Garment&) { return std::make_unique<Meeting>(place, independent); }, settings);
     World world(&solver);
     for (const btScalar x : {0.0F, 3.0F}) world.add(patch(world.info(), {x, 0, 0}, 17));
     world.step(h);
@@ -168,6 +171,7 @@ TEST(ParallelStepping, GarmentsOfOneCharacterShareOneRefitInAnyThread) {
 TEST(ParallelStepping, TwoBodiesTakeTwoThreadsUnlessTheyMustNot) {
     btGnnSolverSettings settings;
     EXPECT_TRUE(meet(settings, true));
+    EXPECT_FALSE(meet(settings, false, false)) << "steppers that do not say that they may";
     settings.parallel = false;
     EXPECT_FALSE(meet(settings, false));
     settings.parallel = true;

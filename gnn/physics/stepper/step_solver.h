@@ -58,6 +58,10 @@ class StepSolver {
     std::string name() const;
     double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
     const StepSettings& settings() const { return m_settings; }
+    /// See Stepper::is_independent(): if the start is, and nobody else holds it.
+    bool is_independent() const {
+        return !m_start || (m_start.use_count() == 1 && m_start->is_independent());
+    }
 
     /// Builds what steps of this length (s) need. Never throws.
     void prepare(double dt);

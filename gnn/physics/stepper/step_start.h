@@ -17,6 +17,9 @@ class StepStart {
     /// Time step that it is made for (s).
     virtual double fixed_dt() const = 0;
 
+    /// Whether predict() may run while other independent ones do, in other threads.
+    virtual bool is_independent() const { return false; }
+
     /// @param potential   begun for this step, with the nearest points of state.x
     /// @param guess       |V| x 3 (m), pins at their targets
     /// @param at_guess    E and its gradient at the guess, where it computes them; else as it was

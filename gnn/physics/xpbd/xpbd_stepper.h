@@ -51,6 +51,7 @@ class XpbdStepper : public Stepper {
 
     /// "xpbd-N" with N substeps.
     std::string name() const override;
+    bool is_independent() const override { return true; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
 
  private:

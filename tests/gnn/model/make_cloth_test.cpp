@@ -198,6 +198,20 @@ TEST_F(NetworkStep, IsNamedAfterItsWeightsWhereTheyHaveAName) {
     EXPECT_EQ(name(), "small+2");
 }
 
+TEST_F(NetworkStep, IsIndependentUnlessThePredictorIsShared) {
+    const ClothStepperSettings settings;
+    EXPECT_TRUE(make_cloth(m_garment)->is_independent());
+    ClothSettings learned;
+    learned.weights = std::make_shared<const EngineWeights>(test::random_weights(small_config()));
+    EXPECT_TRUE(make_cloth(m_garment, learned)->is_independent());
+    auto engine = std::make_shared<Engine>(learned.weights);
+    const auto one = make_cloth(m_garment, engine, settings);
+    EXPECT_FALSE(one->is_independent());
+    engine.reset();
+    EXPECT_TRUE(one->is_independent());
+    EXPECT_FALSE(made(Vec3::Zero(), 1)->is_independent()) << "the predictor does not say so";
+}
+
 TEST_F(NetworkStep, EnergiesOfGuessAndPredictionComeFromTheFeatures) {
     // A network without force features computes none: the step does, to the same bits.
     class Plain : public ConstantPredictor {
