@@ -59,7 +59,7 @@ TEST(ScalingRun, EverySolverGivesARowOfSense) {
         EXPECT_GE(row.ms_p95, row.ms_median);
         EXPECT_NEAR(row.us_per_vertex() * row.vertices, 1e3 * row.ms_median, 1e-6);
         EXPECT_GT(row.solve_ms, 0.0);
-        EXPECT_GT(row.setup_ms, row.ms_median);
+        EXPECT_GT(row.setup_ms, 0.0);
         EXPECT_GE(row.memory_mb, 0.0);
         EXPECT_TRUE(to_json(row).at("failure").is_null());
     }
