@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "data/body/clearance.h"
+#include "data/body/garment_fit.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/surface_distance.h"
@@ -33,6 +34,18 @@ void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::str
 
 }  // namespace
 
+Faces Outfit::faces_of_part(int part) const {
+    const Faces& all = garment.rest().faces;
+    const auto k = static_cast<size_t>(part);
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index f = 0; f < all.rows(); ++f)
+        if (all(f, 0) >= first_vertex[k] && all(f, 0) < first_vertex[k + 1]) rows.push_back(f);
+    Faces faces(static_cast<Eigen::Index>(rows.size()), 3);
+    for (size_t row = 0; row < rows.size(); ++row)
+        faces.row(static_cast<Eigen::Index>(row)) = all.row(rows[row]);
+    return faces;
+}
+
 std::vector<std::string> outfit_parts(const std::string& name) {
     if (std::filesystem::exists(name)) return {name};
     std::vector<std::string> parts;
@@ -61,6 +74,27 @@ Outfit load_outfit(const std::string& name, const Fabric& fabric) {
         inner.push_back(std::move(worn));
     }
     return {std::move(merged.garment), std::move(start), std::move(merged.first_vertex)};
+}
+
+Outfit fit_outfit(const Outfit& outfit, const Body& from, const Body& to) {
+    const Garment& garment = outfit.garment;
+    ClothState start = outfit.start;
+    std::vector<TriMesh> inner;
+    for (int part = outfit.part_count(); part-- > 0;) {
+        const int first = outfit.first_vertex[static_cast<size_t>(part)];
+        const int count = outfit.first_vertex[static_cast<size_t>(part) + 1] - first;
+        TriMesh worn{outfit.start.x.middleRows(first, count), outfit.faces_of_part(part)};
+        worn.faces.array() -= first;
+        worn.vertices = fit_garment(worn, from.rest_mesh(), to.rest());
+        if (outfit.has_layers()) wear_over(worn, inner, garment.name());
+        start.x.middleRows(first, count) = worn.vertices;
+        inner.push_back(std::move(worn));
+    }
+    TriMesh rest = garment.rest();
+    rest.vertices += start.x - outfit.start.x;
+    return {Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins(),
+                    garment.rest_angles_from_mesh()),
+            std::move(start), outfit.first_vertex};
 }
 
 }  // namespace cloth

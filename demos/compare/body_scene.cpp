@@ -7,6 +7,7 @@
 #include "collision/proximity/proximity.h"
 #include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
+#include "demos/compare/body_named.h"
 
 namespace cloth {
 
@@ -26,18 +27,25 @@ void check_garment_name(const std::string& name) {
                              ", several joined by +, or give a mesh file");
 }
 
-static Outfit outfit_of(const BodySceneSettings& settings) {
+static Outfit outfit_of(const BodySceneSettings& settings, const Body& body) {
     check_garment_name(settings.garment);
-    return load_outfit(settings.garment, fabric_named(settings.fabric));
+    Outfit outfit = load_outfit(settings.garment, fabric_named(settings.fabric));
+    if (settings.body == "default") return outfit;
+    return fit_outfit(outfit, Body::load_default(), body);
 }
 
-BodyScene::BodyScene(const BodySceneSettings& settings) : BodyScene(settings, outfit_of(settings)) {
+BodyScene::BodyScene(const BodySceneSettings& settings)
+    : BodyScene(settings, body_named(settings.body)) {
 }
 
-BodyScene::BodyScene(const BodySceneSettings& settings, const Outfit& outfit)
-    : ComparisonScene(outfit.garment, settings.rate), m_start(outfit.start) {
+BodyScene::BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body)
+    : BodyScene(settings, body, outfit_of(settings, *body)) {
+}
+
+BodyScene::BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body,
+                     const Outfit& outfit)
+    : ComparisonScene(outfit.garment, settings.rate), m_outfit(outfit) {
     if (outfit.has_layers()) m_self_contact.thickness = Outfit::thickness;
-    const auto body = std::make_shared<const Body>(Body::load_default());
     AnimationSettings animation;
     animation.limbs = settings.limbs;
     m_body = std::make_unique<AnimatedBody>(body, load_motion_by_name(settings.motion), animation);
@@ -72,12 +80,12 @@ void BodyScene::find_covered_skin() {
     SurfaceContacts contacts;
     Boundary boundary;
     boundary.obstacles.push_back(m_body->obstacle(0.0, 0.0));
-    proximity.query(m_start.x, boundary, contacts);
+    proximity.query(m_outfit.start.x, boundary, contacts);
     const Faces& faces = *m_body->faces();
-    for (Eigen::Index i = 0; i < m_start.x.rows(); ++i)
+    for (Eigen::Index i = 0; i < m_outfit.start.x.rows(); ++i)
         if (contacts.has(i)) m_covered.push_back(faces(contacts.face[static_cast<size_t>(i)], 0));
     m_start_offset =
-        m_start.x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x0);
+        m_outfit.start.x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x0);
 }
 
 Vec3 BodyScene::middle_of_covered(const Points& skin) const {

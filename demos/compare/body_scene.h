@@ -13,6 +13,7 @@ namespace cloth {
 struct BodySceneSettings {
     std::string garment = "tshirt";  ///< as load_outfit() takes it; layers have self-contact
     std::string fabric = "soft";     ///< see fabric_named()
+    std::string body = "default";    ///< see body_named(); the garment is fitted to it
     std::string motion = "01_01";
     int rate = 30;              ///< frames per second
     int frames = 90;            ///< of the motion; 0: all
@@ -30,13 +31,14 @@ class BodyScene : public ComparisonScene {
     explicit BodyScene(const BodySceneSettings& settings);
 
     const AnimatedBody& body() const { return *m_body; }
+    const Outfit& outfit() const { return m_outfit; }
 
     /// Skin of the body at a time of the motion's clock (|V| x 3, m).
     Points skin(double time) const;
 
     Boundary boundary(double t0, double t1) const override;
     /// As worn on the body's rest pose.
-    ClothState start() const override { return m_start; }
+    ClothState start() const override { return m_outfit.start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
     std::vector<BodySegment> segments() const override;
     bool has_limbs() const override { return m_body->limbs() != nullptr; }
@@ -47,12 +49,14 @@ class BodyScene : public ComparisonScene {
     SelfContactSettings self_contact() const override { return m_self_contact; }
 
  private:
-    BodyScene(const BodySceneSettings& settings, const Outfit& outfit);
+    BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body);
+    BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body,
+              const Outfit& outfit);
     void find_covered_skin();
     Vec3 middle_of_covered(const Points& skin) const;
 
     std::unique_ptr<AnimatedBody> m_body;
-    ClothState m_start;
+    Outfit m_outfit;
     SelfContactSettings m_self_contact;
     int m_lead_in_frames = 0;
     std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest

@@ -47,6 +47,14 @@ CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string&
     return app.add_option("--garment", garment, text + "\n" + line)->type_name("NAME");
 }
 
+CLI::Option* add_body(CLI::App& app, std::string& body) {
+    return app
+        .add_option("--body", body,
+                    "that wears it: default, slight, heavy, or a number, of which each is\n"
+                    "a sampled shape; all but the first need the shared data")
+        ->type_name("NAME");
+}
+
 void parse(CLI::App& app, const std::vector<std::string>& arguments) {
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

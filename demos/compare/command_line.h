@@ -34,6 +34,10 @@ CLI::Option* add_list(CLI::App& app, const std::string& name, std::vector<std::s
 /// @param garment  kept if the option is not given
 CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string& description);
 
+/// The option --body, see body_named(); its value is not checked here.
+/// @param body  kept if the option is not given
+CLI::Option* add_body(CLI::App& app, std::string& body);
+
 /// @throws UsageError if the command line is wrong, HelpText if it asks for help
 void parse(CLI::App& app, const std::vector<std::string>& arguments);
 

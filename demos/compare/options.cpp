@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "demos/compare/body_named.h"
 #include "demos/compare/command_line.h"
 
 namespace cloth {
@@ -9,6 +10,7 @@ namespace cloth {
 BodySceneSettings scene_settings(const CompareOptions& options) {
     BodySceneSettings scene;
     scene.garment = options.garment;
+    scene.body = options.body;
     scene.fabric = options.fabric;
     scene.motion = options.motion;
     scene.rate = options.rate;
@@ -30,6 +32,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
                  "compare");
     set_up(app);
     add_garment(app, options.garment, "what the body wears (default tshirt)");
+    add_body(app, options.body);
     app.add_option("--motion", options.motion,
                    "01_01, 01_03, Boxing_Toes, a clip's number or a BVH file")
         ->type_name("NAME");
@@ -65,6 +68,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         "afresh.");
     parse(app, arguments);
     check_garment_name(options.garment);
+    body_shape_named(options.body);
     options.video = !no_video;
     return options;
 }
@@ -73,6 +77,8 @@ std::vector<std::string> worker_arguments(const CompareOptions& options,
                                           const std::string& worker) {
     std::vector<std::string> arguments = {"--garment",
                                           options.garment,
+                                          "--body",
+                                          options.body,
                                           "--motion",
                                           options.motion,
                                           "--fabric",

@@ -11,6 +11,7 @@ namespace cloth {
 
 struct CompareOptions {
     std::string garment = "tshirt";
+    std::string body = "default";  ///< that wears it, see body_named()
     std::string motion = "01_01";
     std::string fabric = "soft";  ///< soft (SNUG's cotton, 33 N/m) or real (5 kN/m)
     std::vector<std::string> solvers;

@@ -16,7 +16,6 @@
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
 #include "demos/compare/command_line.h"
-#include "demos/make_garments/lookbook.h"
 
 using namespace cloth;
 
@@ -24,12 +23,9 @@ namespace {
 
 struct Options {
     std::vector<std::string> garments;
-    int vertices = 0;      ///< 0: those of the committed files
-    std::string body;      ///< file; empty: the default body
-    std::string out;       ///< folder; empty: where the committed garments are
-    std::string lookbook;  ///< picture of the garments instead; empty: make them
-    std::string motion = "01_01";
-    int frames = 90;
+    int vertices = 0;  ///< 0: those of the committed files
+    std::string body;  ///< file; empty: the default body
+    std::string out;   ///< folder; empty: where the committed garments are
 };
 
 const char* const all_garments[] = {"tshirt", "tank_top", "long_top", "shirt",
@@ -51,15 +47,6 @@ Options parse_options(const std::vector<std::string>& arguments) {
         ->type_name("FILE");
     app.add_option("--out", options.out, "folder (default: data/assets/garments)")
         ->type_name("DIR");
-    app.add_option("--lookbook", options.lookbook,
-                   "makes nothing: draws garments that there are (none named: one of\n"
-                   "each) as they are put on, and in a motion on up to three bodies")
-        ->type_name("FILE.png");
-    app.add_option("--motion", options.motion,
-                   "of the lookbook: 01_01 (default), a clip's number or a BVH file")
-        ->type_name("NAME");
-    add_whole_number(app, "--frames", options.frames, 1, 100000,
-                     "of 1/30 s into the motion (default 90)");
     app.footer(
         "Writes NAME.obj and, for garments with a waistband, NAME.worn.obj: where the vertices\n"
         "of NAME.obj are when the body wears it.");
@@ -135,20 +122,7 @@ void make_cape(const Options& options) {
     save(options, "cape", cape);
 }
 
-void draw_lookbook(const Options& options) {
-    LookbookSettings settings;
-    settings.garments = options.garments;
-    if (settings.garments.empty())
-        for (const std::string name : all_garments) settings.garments.push_back(name + "_1000");
-    for (const std::string& name : settings.garments) check_garment_name(name);
-    settings.motion = options.motion;
-    settings.frames = options.frames;
-    write_png(options.lookbook, lookbook(settings));
-    std::printf("%s\n", options.lookbook.c_str());
-}
-
 void make_garments(const Options& options) {
-    if (!options.lookbook.empty()) return draw_lookbook(options);
     std::filesystem::create_directories(options.out);
     const Wearer person = wearer(options);
     if (options.garments.empty()) {

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "demos/speed_error/reference_cache.h"
 
@@ -57,7 +58,8 @@ std::vector<double> times_of(const std::string& name, const std::vector<std::str
 SceneReport measure_scene(const SceneSettings& scene_settings, const ContestSettings& settings,
                           const ProgressFunction& progress) {
     const std::string name = scene_settings.name + "_" + scene_settings.fabric + "_" +
-                             std::to_string(scene_settings.rate) + "Hz";
+                             std::to_string(scene_settings.rate) + "Hz_" + scene_settings.body +
+                             "_" + std::filesystem::path(scene_settings.motion).stem().string();
     const auto tell = [&](int done, int all, const std::string& what) {
         progress(done, all, scene_settings.name + ", " + scene_settings.fabric + ": " + what);
     };

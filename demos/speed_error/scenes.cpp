@@ -103,6 +103,8 @@ std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings) {
     if (settings.name == "sphere") return std::make_unique<SphereScene>(settings);
     BodySceneSettings body;
     body.garment = settings.name;
+    body.body = settings.body;
+    body.motion = settings.motion;
     body.fabric = settings.fabric;
     body.rate = settings.rate;
     body.frames = settings.frames;

@@ -9,11 +9,13 @@
 namespace cloth {
 
 struct SceneSettings {
-    std::string name = "tshirt";  ///< sheet, sphere or a garment, of garment_names(), on a body
-    std::string fabric = "soft";  ///< soft, real
-    int frames = 30;              ///< all with references; 0: as long as the scene lasts
-    int vertices = 4000;          ///< of the sheets
-    int rate = 30;                ///< frames per second
+    std::string name = "tshirt";   ///< sheet, sphere or a garment, of garment_names(), on a body
+    std::string fabric = "soft";   ///< soft, real
+    int frames = 30;               ///< all with references; 0: as long as the scene lasts
+    int vertices = 4000;           ///< of the sheets
+    int rate = 30;                 ///< frames per second
+    std::string body = "default";  ///< that wears the garment, see body_named()
+    std::string motion = "01_01";  ///< of the body
 };
 
 /// Where the garment of the scene on a body is not another one.

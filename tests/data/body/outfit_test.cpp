@@ -58,6 +58,52 @@ TEST(Outfit, TheInnermostIsWornAsAlone) {
         4e-3);
 }
 
+TEST(Outfit, AnotherBodyWearsItInTheSameOrder) {
+    const Outfit outfit = load_outfit("tshirt_1000+pants_1000");
+    const Body body = Body::load_default();
+    Points broad = body.rest();
+    broad.col(0) *= 1.06;
+    broad.col(2) *= 1.12;
+    const Body other = body.with_rest(broad);
+    const Outfit fitted = fit_outfit(outfit, body, other);
+    ASSERT_EQ(fitted.part_count(), 2);
+    EXPECT_EQ(fitted.first_vertex, outfit.first_vertex);
+    EXPECT_EQ(fitted.garment.rest().faces, outfit.garment.rest().faces);
+    const SurfaceDistance skin(other.rest_mesh());
+    const TriMesh shirt = worn_part(fitted, "tshirt_1000", 0),
+                  pants = worn_part(fitted, "pants_1000", 1);
+    EXPECT_GT(smallest_clearance(shirt, skin), 4e-3);
+    EXPECT_GT(smallest_clearance(pants, skin), 4e-3);
+    const SurfaceDistance below(pants);
+    for (Eigen::Index i = 0; i < shirt.vertices.rows(); ++i) {
+        const auto near = below.nearest_within(0.02, shirt.vertices.row(i));
+        if (!near) continue;
+        const Vec3 away = Vec3(shirt.vertices.row(i)) - near->point;
+        const double height = away.dot(near->normal);
+        if (away.norm() - height > 1e-6) continue;  // beside a border
+        EXPECT_GT(height, Outfit::gap - 1e-6);
+    }
+    // Ease and waistband are kept: rest and worn shape move alike.
+    EXPECT_LT(((fitted.garment.rest().vertices - outfit.garment.rest().vertices) -
+               (fitted.start.x - outfit.start.x))
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-12);
+    EXPECT_GT((fitted.start.x - outfit.start.x).rowwise().norm().maxCoeff(), 0.01);
+}
+
+TEST(Outfit, FacesOfAPartAreItsOwn) {
+    const Outfit outfit = load_outfit("tshirt_1000+pants_1000");
+    Eigen::Index faces = 0;
+    for (int part = 0; part < outfit.part_count(); ++part) {
+        const Faces own = outfit.faces_of_part(part);
+        EXPECT_GE(own.minCoeff(), outfit.first_vertex[static_cast<size_t>(part)]);
+        EXPECT_LT(own.maxCoeff(), outfit.first_vertex[static_cast<size_t>(part) + 1]);
+        faces += own.rows();
+    }
+    EXPECT_EQ(faces, outfit.garment.face_count());
+}
+
 TEST(Outfit, WrongNamesAreNamed) {
     EXPECT_THROW(load_outfit("tshirt_1000+toga"), LoadError);
     EXPECT_THROW(load_outfit(""), LoadError);
