@@ -3,6 +3,7 @@
 #include "demos/doc_tables/motion_tables.h"
 #include "demos/doc_tables/scaling_tables.h"
 #include "demos/doc_tables/solver_tables.h"
+#include "demos/doc_tables/wardrobe_tables.h"
 
 namespace cloth {
 
@@ -30,6 +31,8 @@ const Registry& doc_registry() {
          {"max_ms", {"max_ms"}, real_time_table},
          {"scaling", {"scaling"}, scaling_table},
          {"many_characters", {"many_characters"}, many_characters_table},
+         {"generalisation", {"generalisation"}, generalisation_table},
+         {"lookbook", {"lookbook"}, lookbook_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},
