@@ -51,13 +51,12 @@ MarkdownTable lookbook_table(const std::vector<DataFile>& files) {
     const std::vector<DataRow> rows = files.at(0).rows("rows");
     const std::vector<std::string> bodies = distinct(rows, "/body");
     MarkdownTable table;
-    table.heading = {"garment", "vertices", "ms per frame"};
+    table.heading = {"garment", "vertices"};
     for (const std::string& body : bodies)
         table.heading.push_back(body + ": stretch of 99 % / of all, deepest (mm)");
     for (const std::string& garment : distinct(rows, "/garment")) {
         const DataRow first = files.at(0).row("rows", {{"garment", garment}});
-        std::vector<std::string> cells = {garment, decimals(first.number("/vertices"), 0),
-                                          significant(first.number("/ms_median"), 2)};
+        std::vector<std::string> cells = {garment, decimals(first.number("/vertices"), 0)};
         for (const std::string& body : bodies) {
             const DataRow row = files.at(0).row("rows", {{"garment", garment}, {"body", body}});
             cells.push_back(decimals(row.number("/stretch_p99"), 2) + " / " +

@@ -1,7 +1,5 @@
 #include "demos/lookbook/look.h"
 
-#include <chrono>
-
 #include "collision/proximity/metrics.h"
 #include "demos/compare/figure_meshes.h"
 #include "demos/compare/json_numbers.h"
@@ -29,11 +27,7 @@ void Look::settle() {
 void Look::step() {
     const int now = frame();
     const Boundary boundary = m_scene.frame_boundary(now);
-    const auto start = std::chrono::steady_clock::now();
     const StepReport report = m_stepper->step(boundary, m_scene.frame_time(), m_state);
-    m_ms.push_back(
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-            .count());
     measure(now, report);
     if (!m_failure.empty()) return;
     const std::string loss = m_scene.loss(boundary, m_state.x);
@@ -71,7 +65,6 @@ nlohmann::ordered_json Look::measured() const {
             {"solver", m_stepper->name()},
             {"vertices", m_scene.garment().vertex_count()},
             {"frames", frame()},
-            {"ms_median", rounded_number(median(m_ms))},
             {"stretch_p99", most(m_stretch_p99)},
             {"stretch_max", most(m_stretch_max)},
             {"depth_mm", most(m_depth_mm)},

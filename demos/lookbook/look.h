@@ -25,7 +25,7 @@ class Look {
 
     const BodyScene& scene() const { return m_scene; }
     int frames() const { return m_scene.frames(); }
-    int frame() const { return static_cast<int>(m_ms.size()); }  ///< that comes next
+    int frame() const { return static_cast<int>(m_depth_mm.size()); }  ///< that comes next
 
     /// The lead-in, in which the body moves into the motion's first pose.
     void settle();
@@ -47,7 +47,7 @@ class Look {
     std::unique_ptr<Stepper> m_stepper;
     ClothState m_state;
     std::vector<std::shared_ptr<const Faces>> m_faces;  ///< of each garment
-    std::vector<double> m_ms, m_stretch_p99, m_stretch_max, m_depth_mm;
+    std::vector<double> m_stretch_p99, m_stretch_max, m_depth_mm;
     int m_failed_steps = 0;
     std::string m_failure;
 };
