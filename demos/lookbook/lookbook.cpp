@@ -26,10 +26,7 @@ std::vector<std::string> bodies_of(const LookbookOptions& options) {
 class Row {
  public:
     Row(const LookbookOptions& options, const std::string& body, OsmesaRenderer& renderer)
-        : m_options(options),
-          m_body(body),
-          m_renderer(renderer),
-          m_tracker(FramingSettings{}, static_cast<double>(width) / height) {
+        : m_options(options), m_body(body), m_renderer(renderer), m_tracker(tracker()) {
         for (const std::string& garment : options.garments) {
             BodySceneSettings settings;
             settings.garment = garment;
@@ -45,8 +42,12 @@ class Row {
     const std::vector<std::unique_ptr<Look>>& looks() const { return m_looks; }
     int frames() const { return m_looks.front()->frames(); }
 
-    std::vector<Image> panels() {
-        const Camera camera = m_tracker.follow(m_looks.front()->skin());
+    /// By a camera that frames the figure as it is now.
+    std::vector<Image> portraits() const {
+        return panels(tracker().follow(m_looks.front()->skin()));
+    }
+
+    std::vector<Image> panels(const Camera& camera) const {
         std::vector<Image> panels;
         for (size_t k = 0; k < m_looks.size(); ++k)
             panels.push_back(m_renderer.render(m_looks[k]->picture(k), camera));
@@ -68,11 +69,10 @@ class Row {
         std::unique_ptr<VideoWriter> video;
         for (int frame = 0; frame < frames(); ++frame) {
             for (const auto& look : m_looks) look->step();
-            if (m_options.video || frame == shown) {
-                const std::vector<Image> now = panels();
-                if (m_options.video) add(video, montage(now, m_options.garments));
-                if (frame == shown) picture = now;
-            }
+            if (m_options.video)
+                add(video,
+                    montage(panels(m_tracker.follow(m_looks.front()->skin())), m_options.garments));
+            if (frame == shown) picture = portraits();
             progress(frame + 1, frames(), m_body + ": frames");
         }
         if (video) video->close();
@@ -80,6 +80,10 @@ class Row {
     }
 
  private:
+    static FigureTracker tracker() {
+        return FigureTracker(FramingSettings{}, static_cast<double>(width) / height);
+    }
+
     void add(std::unique_ptr<VideoWriter>& video, const Image& image) const {
         if (!video)
             video = std::make_unique<VideoWriter>(m_options.out + "/" + m_body + ".mp4",
@@ -132,7 +136,7 @@ nlohmann::ordered_json make_lookbook(const LookbookOptions& options,
     for (const std::string& body : bodies_of(options)) {
         Row row(options, body, renderer);
         row.settle(progress);
-        if (rows.empty()) page.add("at the start", row.panels());
+        if (rows.empty()) page.add("at the start", row.portraits());
         page.add(body, row.run(progress));
         page.write();
         for (const auto& look : row.looks()) rows.push_back(look->measured());
