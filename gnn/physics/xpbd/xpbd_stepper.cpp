@@ -31,14 +31,24 @@ const XpbdSettings& checked(const XpbdSettings& settings) {
     return settings;
 }
 
+/// |V| (1/kg): springs do not move pins, nor what stays at its goal; they would be half as stiff
+/// there.
+VectorX movable_masses(const Garment& garment) {
+    VectorX inverse = garment.inverse_masses();
+    const VectorX& distance = garment.goal_limits().max_distance;
+    for (Eigen::Index i = 0; i < distance.size(); ++i)
+        if (distance[i] == 0.0) inverse[i] = 0.0;
+    return inverse;
+}
+
 }  // namespace
 
 XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
                          const ProximitySettings& proximity)
     : m_garment(&garment),
       m_settings(checked(settings)),
-      m_stretch(stretch_springs(garment), garment.inverse_masses(), settings.relaxation),
-      m_bending(bending_springs(garment, settings.bending_angle), garment.inverse_masses(),
+      m_stretch(stretch_springs(garment), movable_masses(garment), settings.relaxation),
+      m_bending(bending_springs(garment, settings.bending_angle), movable_masses(garment),
                 settings.relaxation),
       m_proximity(proximity),
       m_resolver(garment),
@@ -136,6 +146,7 @@ void XpbdStepper::run(const Boundary& boundary, double dt, const Points& x0) {
         move_freely(boundary, dt / m_settings.substeps);
         m_goals.begin_substep(index);
         m_goals.drive(m_before, m_p);
+        m_goals.project(m_p);
         move_pins(boundary, x0, static_cast<double>(index) / m_settings.substeps);
         for (int k = 0; k < m_settings.iterations; ++k) {
             m_stretch.relax(m_p, k == 0);
