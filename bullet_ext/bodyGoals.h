@@ -16,6 +16,7 @@ class BodyGoals {
     /// @param goals     all of one size, finite; without normals no vertex has a backstop
     /// @param duration  from x0 to x1 (s); 0: one world step
     void set(SkinGoals goals, double duration);
+    Eigen::Index size() const { return m_goals.x0.rows(); }
     /// Whether they ever were.
     bool given() const { return m_given; }
 

@@ -9,6 +9,7 @@
 
 #include "bullet_ext/bodyGoals.h"
 #include "bullet_ext/materialFabric.h"
+#include "bullet_ext/rootMotion.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
 #include "bullet_ext/solveSteps.h"
@@ -65,6 +66,14 @@ Garment scaledGarment(const Garment& garment, double factor) {
 /// The same garment with the limits of its body.
 Garment limitedGarment(const Garment& garment, const std::optional<cloth::GoalLimits>& limits) {
     return garment.with_goals(limits.value_or(cloth::GoalLimits()));
+}
+
+bool areLimitsOf(const btSoftBody& body, const cloth::GoalLimits& limits) {
+    const auto fits = [&](const cloth::VectorX& values) {
+        return values.size() == 0 || values.size() == body.m_nodes.size();
+    };
+    return fits(limits.max_distance) && fits(limits.backstop) && fits(limits.drive_stiffness) &&
+           fits(limits.drive_damping);
 }
 
 void checkGoals(const btSoftBody& body, const cloth::SkinGoals& goals, double duration) {
@@ -217,16 +226,24 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
         body, std::move(garment), std::move(stepper), m_settings.sleepMotion,
         m_settings.friction == btGnnFriction::bullet);
     joinGoals(body, entry);
+    entry.step->setRoot(entry.root);
     entry.handover.end(body);
     if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
 }
 
+/// The goals of a body as it is now: those that it has, or some that rest where its nodes are.
+const std::shared_ptr<cloth::BodyGoals>& btGnnSoftBodySolver::goalsOf(const btSoftBody& body,
+                                                                      Entry& entry) {
+    if (!entry.goals || entry.goals->size() != body.m_nodes.size())
+        entry.goals = std::make_shared<cloth::BodyGoals>(cloth::nodePositions(body));
+    return entry.goals;
+}
+
 /// Goals stay when garment or stepper of a body change, and end with a change of its nodes.
 void btGnnSoftBodySolver::joinGoals(btSoftBody& body, Entry& entry) {
     if (!entry.limits) return;
-    if (!entry.goals) entry.goals = std::make_shared<cloth::BodyGoals>(cloth::nodePositions(body));
-    entry.step->setGoals(entry.goals);
+    entry.step->setGoals(goalsOf(body, entry));
 }
 
 Garment btGnnSoftBodySolver::garmentFor(const btSoftBody& body, const Entry& entry) const {
@@ -268,7 +285,7 @@ void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
 /// made anew.
 void btGnnSoftBodySolver::followCut(btSoftBody& body, Entry& entry) {
     entry.given = nullptr;
-    if (entry.limits && entry.goals && entry.goals->now().rows() != body.m_nodes.size()) {
+    if (entry.limits && !areLimitsOf(body, *entry.limits)) {
         entry.limits.reset();
         entry.goals.reset();
         say(cloth::softBodyName(body) +
@@ -351,7 +368,7 @@ void btGnnSoftBodySolver::setGoals(btSoftBody* body, cloth::SkinGoals goals, dou
     if (!body) throw ArgumentError("setGoals()", "the soft body is null", "create it first");
     checkGoals(*body, goals, duration);
     Entry& entry = m_entries[body];
-    if (!entry.goals) entry.goals = std::make_shared<cloth::BodyGoals>(cloth::nodePositions(*body));
+    goalsOf(*body, entry);
     constexpr double kJump = 0.5;  // m: nobody moves as far between the end of a step and the next
     const double jump = std::sqrt((goals.x0 - entry.goals->now()).rowwise().squaredNorm().mean());
     if (entry.goals->given() && jump > kJump)
@@ -366,6 +383,30 @@ void btGnnSoftBodySolver::setGoals(btSoftBody* body, cloth::SkinGoals goals, dou
         body->activate();
 }
 
+cloth::RootMotion& btGnnSoftBodySolver::rootOf(Entry& entry) {
+    if (!entry.root) entry.root = std::make_shared<cloth::RootMotion>();
+    if (entry.step) entry.step->setRoot(entry.root);
+    return *entry.root;
+}
+
+void btGnnSoftBodySolver::setInertia(btSoftBody* body, double linear, double angular) {
+    if (!body) throw ArgumentError("setInertia()", "the soft body is null", "create it first");
+    cloth::check_range(cloth::softBodyName(*body) + ": linear inertia", linear, 0.0, 1.0);
+    cloth::check_range(cloth::softBodyName(*body) + ": angular inertia", angular, 0.0, 1.0);
+    rootOf(m_entries[body]).setInertia(linear, angular);
+}
+
+void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& from,
+                                        const btTransform& to, double duration) {
+    if (!body) throw ArgumentError("setRootMotion()", "the soft body is null", "create it first");
+    if (!isFinite(from) || !isFinite(to) || !(duration >= 0.0) || std::isinf(duration))
+        throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
+                            "a pose or the duration is not finite",
+                            "check the animation before handing it over");
+    rootOf(m_entries[body]).set(cloth::toPose(from), cloth::toPose(to), duration);
+    if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
+}
+
 void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
                                    btGnnTeleport kind) {
     if (!body) throw ArgumentError("teleport()", "the soft body is null", "create it first");
@@ -373,8 +414,8 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
         throw ArgumentError(cloth::softBodyName(*body) + ": teleport()", "the motion is not finite",
                             "give the motion from the old place to the new one");
     Entry& entry = m_entries[body];
-    const bool reset = kind == btGnnTeleport::reset && entry.goals;
-    const cloth::Points places = reset ? entry.goals->now() : cloth::nodePositions(*body);
+    const bool reset = kind == btGnnTeleport::reset && entry.limits;
+    const cloth::Points places = reset ? goalsOf(*body, entry)->now() : cloth::nodePositions(*body);
     for (int i = 0; i < body->m_nodes.size(); ++i) {
         btSoftBody::Node& node = body->m_nodes[i];
         node.m_x = motion * cloth::toBullet(cloth::Vec3(places.row(i)));

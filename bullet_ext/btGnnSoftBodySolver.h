@@ -19,6 +19,7 @@
 namespace cloth {
 
 class BodyGoals;
+class RootMotion;
 class SoftBodyStep;
 
 /// Makes the stepper of one garment. The garment outlives the stepper.
@@ -176,6 +177,18 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// not
     ///         finite
     void setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration = 0.0);
+    /// How much of its root's motion a body's cloth feels, 1 until set: with less, cloth of a
+    /// character that runs or rides hangs and swings as on one that goes slowly. The rest of the
+    /// motion carries the cloth along. Gravity, goals, pins and obstacles count as ever.
+    /// @param linear, angular  shares of displacement and turn, 0 to 1
+    /// @throws cloth::ArgumentError if the body is null or a share is out of range
+    void setInertia(btSoftBody* body, double linear, double angular);
+    /// Gives the root's motion before each stepSimulation(), such as that of the character's hips;
+    /// a root that is not given anew stands still.
+    /// @param from, to  now and after `duration` seconds, in the world
+    /// @throws cloth::ArgumentError if the body is null or a number is not finite
+    void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
+                       double duration = 0.0);
     /// Moves a body at once, without what cloth does when it is dragged there: where its character
     /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
     ///
@@ -209,6 +222,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         std::optional<cloth::Fabric> fabric;          ///< the body's own
         cloth::StepperFactory factory;                ///< the body's own, else null
         std::optional<cloth::GoalLimits> limits;      ///< by the user
+        std::shared_ptr<cloth::RootMotion> root;      ///< null: nobody asked for it
         std::shared_ptr<cloth::BodyGoals> goals;      ///< null: nobody asked for goals
         cloth::BulletHandover handover;
         size_t topology = 0;
@@ -231,7 +245,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     };
     void stepTogether(const std::vector<Stepped>& cloth);
     void finishStep(const Stepped& cloth);
+    const std::shared_ptr<cloth::BodyGoals>& goalsOf(const btSoftBody& body, Entry& entry);
     void joinGoals(btSoftBody& body, Entry& entry);
+    cloth::RootMotion& rootOf(Entry& entry);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;

@@ -72,6 +72,7 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     m_result = Result();
     m_begun = false;
     if (m_goals) m_goals->beginStep(h);
+    if (m_root) m_root->beginStep(h);
     // Nodes changed since the solver looked at them: next step.
     if (m_body.m_nodes.size() != m_shown.x.rows()) return false;
     m_result.restored_nodes = restoreNodes();
@@ -308,14 +309,24 @@ bool SoftBodyStep::beginClothStep(BulletObstacles& obstacles) {
     startClothStep(m_result.steps == 0);
     m_cloth_box = boxAhead(m_cloth_step.from, m_cloth_step.length, m_reach);
     m_boundary = boundaryOfClothStep(obstacles);
+    carryClothStep();
     const bool now =
         std::abs(m_cloth_step.begin) + std::abs(m_cloth_step.length - m_h) < 1e-3 * m_h;
     m_hang = now && m_anchored.begin(m_body, *m_garment, m_cloth_step.length);
     return true;
 }
 
+/// What of its root's motion the cloth does not feel.
+void SoftBodyStep::carryClothStep() {
+    m_carried = m_cloth_step.from;
+    if (!m_root) return;
+    const Pose motion =
+        m_root->carry({m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
+    if (motion.matrix() != Pose::Identity().matrix()) carryStart(motion, m_boundary, m_carried);
+}
+
 void SoftBodyStep::solve() {
-    const ClothState& from = m_cloth_step.from;
+    const ClothState& from = m_carried;
     StageTimes times;
     do {
         m_solved = from;
@@ -328,12 +339,12 @@ void SoftBodyStep::solve() {
 }
 
 void SoftBodyStep::endClothStep(BulletObstacles& obstacles) {
-    const ClothState& from = m_cloth_step.from;
+    const ClothState& from = m_carried;
     if (m_hang && m_report.finite) m_anchored.place(m_solved);
     if (m_report.finite)
         m_cloth_step.to = std::move(m_solved);
     else
-        m_cloth_step.to = from;
+        m_cloth_step.to = m_cloth_step.from;
     m_cloth_step.to.time = from.time + m_cloth_step.length;
     // Impulses of friction are handed on by themselves; where there is no body, it is in the
     // balance.

@@ -10,6 +10,7 @@
 #include "bullet_ext/bulletObstacles.h"
 #include "bullet_ext/clothSleep.h"
 #include "bullet_ext/pinchedCloth.h"
+#include "bullet_ext/rootMotion.h"
 #include "bullet_ext/twoWayCoupling.h"
 #include "gnn/deadline.h"
 #include "gnn/stepper.h"
@@ -40,6 +41,8 @@ class SoftBodyStep {
 
     /// Skinned goals of the garment's vertices; asked for if it has limits. Keeps a reference.
     void setGoals(std::shared_ptr<BodyGoals> goals) { m_goals = std::move(goals); }
+    /// Keeps a reference. @param root  null: the cloth feels all of its motion
+    void setRoot(std::shared_ptr<RootMotion> root) { m_root = std::move(root); }
 
     /// Goes on from where the nodes are, pins too: nothing was dragged there.
     void restart();
@@ -113,6 +116,7 @@ class SoftBodyStep {
     static Box boxAhead(const ClothState& state, double time, double reach);
     Boundary boundaryOfClothStep(BulletObstacles& obstacles);
     void startClothStep(bool first_of_step);
+    void carryClothStep();
     bool looksAhead() const;
     void slowDown(BulletObstacles& obstacles);
     void showClothStep();
@@ -124,6 +128,8 @@ class SoftBodyStep {
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
     std::shared_ptr<BodyGoals> m_goals;
+    std::shared_ptr<RootMotion> m_root;
+    ClothState m_carried;  ///< where the present cloth step starts, with what carries it
     Deadline m_deadline;
     StepReport m_report;
     TwoWayCoupling m_reactions;

@@ -66,7 +66,7 @@ void GoalProjection::bring_within(Points& x) {
         x.row(goal.vertex) = goal.within(x.row(goal.vertex)).transpose();
         m_last.max_move = std::max(m_last.max_move, excess);
         m_moved.push_back(goal.vertex);
-        m_inside.push_back(k);
+        m_inside.push_back({k, Vec3::Zero()});
         m_rows.push_back(goal.vertex);
     }
     m_last.moved = static_cast<int>(m_moved.size());
@@ -80,26 +80,23 @@ void GoalProjection::query(Proximity& proximity, const Boundary& boundary, const
 
 void GoalProjection::keep_those_inside(const SurfaceContacts& contacts) {
     size_t kept = 0;
-    for (size_t k = 0; k < m_inside.size(); ++k)
+    for (size_t k = 0; k < m_rows.size(); ++k)
         if (contacts.distance[m_rows[k]] < -fair_depth) {
             m_inside[kept] = m_inside[k];
             m_rows[kept] = m_rows[k];
-            if (!m_from.empty()) m_from[kept] = m_from[k];
             ++kept;
         }
     m_inside.resize(kept);
     m_rows.resize(kept);
-    if (!m_from.empty()) m_from.resize(kept);
 }
 
 /// Onto the nearest surface, back to within the limits, and so on.
 void GoalProjection::alternate(Proximity& proximity, const Boundary& boundary, Points& x,
                                SurfaceContacts& contacts) {
-    m_from.clear();
     for (int round = 0; round < rounds && !m_rows.empty(); ++round) {
         for (size_t k = 0; k < m_rows.size(); ++k) {
             const int i = m_rows[k];
-            const VertexGoal& goal = m_goals[m_inside[k]];
+            const VertexGoal& goal = m_goals[m_inside[k].goal];
             x.row(i) = goal.within(contacts.point1.row(i)).transpose();
         }
         query(proximity, boundary, x, contacts);
@@ -110,13 +107,12 @@ void GoalProjection::alternate(Proximity& proximity, const Boundary& boundary, P
 /// The first place on the way to the goal that is outside, at last the goal itself.
 void GoalProjection::search_towards_goals(Proximity& proximity, const Boundary& boundary, Points& x,
                                           SurfaceContacts& contacts) {
-    m_from.clear();
-    for (const int i : m_rows) m_from.push_back(x.row(i));
+    for (size_t k = 0; k < m_rows.size(); ++k) m_inside[k].from = x.row(m_rows[k]);
     for (const double share : shares) {
         if (m_rows.empty()) return;
         for (size_t k = 0; k < m_rows.size(); ++k) {
-            const Vec3& goal = m_goals[m_inside[k]].place;
-            x.row(m_rows[k]) = (goal + share * (m_from[k] - goal)).transpose();
+            const Vec3& goal = m_goals[m_inside[k].goal].place;
+            x.row(m_rows[k]) = (goal + share * (m_inside[k].from - goal)).transpose();
         }
         query(proximity, boundary, x, contacts);
         keep_those_inside(contacts);
@@ -124,8 +120,9 @@ void GoalProjection::search_towards_goals(Proximity& proximity, const Boundary& 
 }
 
 void GoalProjection::measure(const Points& x) {
-    for (const size_t k : m_inside) {
-        const double excess = m_goals[k].excess(x.row(m_goals[k].vertex));
+    for (const Inside& inside : m_inside) {
+        const VertexGoal& goal = m_goals[inside.goal];
+        const double excess = goal.excess(x.row(goal.vertex));
         if (!(excess > rounding)) continue;
         ++m_last.beyond;
         m_last.max_excess = std::max(m_last.max_excess, excess);

@@ -57,6 +57,11 @@ class GoalProjection {
     const std::vector<int>& moved() const { return m_moved; }  ///< vertices, by the last resolve()
 
  private:
+    struct Inside {
+        size_t goal;
+        Vec3 from;  ///< where the search towards the goal begins (m)
+    };
+
     void bring_within(Points& x);
     void keep_those_inside(const SurfaceContacts& contacts);
     void alternate(Proximity& proximity, const Boundary& boundary, Points& x,
@@ -69,10 +74,9 @@ class GoalProjection {
 
     const Garment* m_garment;
     std::vector<VertexGoal> m_goals;
-    std::vector<size_t> m_inside;  ///< goals of which the vertices are inside an obstacle
-    std::vector<int> m_rows;       ///< their vertices
+    std::vector<Inside> m_inside;  ///< what is inside an obstacle
+    std::vector<int> m_rows;       ///< |inside|: its vertices
     std::vector<int> m_moved;
-    std::vector<Vec3> m_from;  ///< |inside|: where the search begins (m)
     GoalReport m_last;
 };
 

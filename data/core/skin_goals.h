@@ -14,7 +14,7 @@ namespace cloth {
 ///     limits.max_distance.setConstant(garment.vertex_count(), 0.1);  // m
 ///     limits.backstop.setConstant(garment.vertex_count(), 0.02);     // m
 ///     const Garment cape = garment.with_goals(limits);
-///     boundary.goals = ...;  // in each step, see SkinGoals
+///     boundary.goals = SkinGoals::at(cape.rest().vertices);  // in each step, see SkinGoals
 ///
 /// Constant data, part of the Garment. Each array has one value per vertex, or none, which leaves
 /// all vertices free of what it limits. Limits on pinned vertices are without effect.
