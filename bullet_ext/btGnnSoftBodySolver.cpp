@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ext/bodyGoals.h"
 #include "bullet_ext/materialFabric.h"
+#include "bullet_ext/rootMotion.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
 #include "bullet_ext/solveSteps.h"
@@ -61,6 +63,36 @@ Garment scaledGarment(const Garment& garment, double factor) {
     return Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins(), curved);
 }
 
+/// The same garment with the limits of its body.
+Garment limitedGarment(const Garment& garment, const std::optional<cloth::GoalLimits>& limits) {
+    return garment.with_goals(limits.value_or(cloth::GoalLimits()));
+}
+
+bool areLimitsOf(const btSoftBody& body, const cloth::GoalLimits& limits) {
+    const auto fits = [&](const cloth::VectorX& values) {
+        return values.size() == 0 || values.size() == body.m_nodes.size();
+    };
+    return fits(limits.max_distance) && fits(limits.backstop) && fits(limits.drive_stiffness) &&
+           fits(limits.drive_damping);
+}
+
+void checkGoals(const btSoftBody& body, const cloth::SkinGoals& goals, double duration) {
+    const Eigen::Index nodes = body.m_nodes.size();
+    const std::string name = cloth::softBodyName(body) + ": goals";
+    const auto fits = [&](const cloth::Points& points, bool optional) {
+        return points.rows() == nodes || (optional && points.rows() == 0);
+    };
+    if (!fits(goals.x0, false) || !fits(goals.x1, false) || !fits(goals.normal0, true) ||
+        !fits(goals.normal1, true))
+        throw ArgumentError(name, "are not of " + std::to_string(nodes) + " nodes",
+                            "give one place for each node, now and later, and as many normals or "
+                            "none");
+    if (!goals.x0.allFinite() || !goals.x1.allFinite() || !goals.normal0.allFinite() ||
+        !goals.normal1.allFinite() || !(duration >= 0.0) || std::isinf(duration))
+        throw ArgumentError(name, "have places, normals or a duration that are not finite",
+                            "check the animation before handing it over");
+}
+
 /// What cloth and bodies did to each other that a user should know of.
 std::vector<std::string> troublesOf(const btSoftBody& body,
                                     const cloth::SoftBodyStep::Result& result) {
@@ -71,6 +103,10 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
             name +
             ": cloth and rigid bodies would have made energy in a step, which was taken away. "
             "Remedy: if it looks stiff, smaller time steps, or masses that differ less");
+    if (result.without_goals)
+        troubles.push_back(name +
+                           ": it has goal limits and was never given goals, so it is held where it "
+                           "was. Remedy: call setGoals() before each stepSimulation()");
     if (result.caught_nodes > 0)
         troubles.push_back(
             name +
@@ -129,6 +165,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
     cloth::checkGarmentFits(*body, garment);
     Entry& entry = m_entries[body];
     entry.given = std::make_shared<const Garment>(garment);
+    if (garment.has_goals()) entry.limits = garment.goal_limits();
     entry.factory = std::move(factory);
     entry.detached = false;
     entry.asked = true;
@@ -171,7 +208,8 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     if (!hasFiniteNodes(body)) entry.stepping = Stepping::frozen;
     cloth::checkCloth(body);
     if (entry.given) cloth::checkGarmentFits(body, *entry.given);
-    auto garment = std::make_unique<const Garment>(garmentFor(body, entry));
+    auto garment =
+        std::make_unique<const Garment>(limitedGarment(garmentFor(body, entry), entry.limits));
     if (!entry.asked && cloth::isClosed(body)) {
         entry.detached = true;  // for good: what is cut open later shall not collapse, either
         throw ArgumentError(cloth::softBodyName(body),
@@ -187,9 +225,25 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     entry.step = std::make_unique<cloth::SoftBodyStep>(
         body, std::move(garment), std::move(stepper), m_settings.sleepMotion,
         m_settings.friction == btGnnFriction::bullet);
+    joinGoals(body, entry);
+    entry.step->setRoot(entry.root);
     entry.handover.end(body);
     if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
+}
+
+/// The goals of a body as it is now: those that it has, or some that rest where its nodes are.
+const std::shared_ptr<cloth::BodyGoals>& btGnnSoftBodySolver::goalsOf(const btSoftBody& body,
+                                                                      Entry& entry) {
+    if (!entry.goals || entry.goals->size() != body.m_nodes.size())
+        entry.goals = std::make_shared<cloth::BodyGoals>(cloth::nodePositions(body));
+    return entry.goals;
+}
+
+/// Goals stay when garment or stepper of a body change, and end with a change of its nodes.
+void btGnnSoftBodySolver::joinGoals(btSoftBody& body, Entry& entry) {
+    if (!entry.limits) return;
+    entry.step->setGoals(goalsOf(body, entry));
 }
 
 Garment btGnnSoftBodySolver::garmentFor(const btSoftBody& body, const Entry& entry) const {
@@ -231,6 +285,13 @@ void btGnnSoftBodySolver::refresh(btSoftBody& body, Entry& entry) {
 /// made anew.
 void btGnnSoftBodySolver::followCut(btSoftBody& body, Entry& entry) {
     entry.given = nullptr;
+    if (entry.limits && !areLimitsOf(body, *entry.limits)) {
+        entry.limits.reset();
+        entry.goals.reset();
+        say(cloth::softBodyName(body) +
+            ": its nodes were changed, so its skinned goals are gone. Remedy: call setGoalLimits() "
+            "and setGoals() for the nodes of now");
+    }
     if (!entry.step) return;
     try {
         std::optional<Garment> cut =
@@ -292,6 +353,80 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
             softBodies.findLinearSearch(const_cast<btSoftBody*>(it->first)) == softBodies.size();
         it = gone ? m_entries.erase(it) : std::next(it);
     }
+}
+
+void btGnnSoftBodySolver::setGoalLimits(btSoftBody* body, const cloth::GoalLimits& limits) {
+    if (!body) throw ArgumentError("setGoalLimits()", "the soft body is null", "create it first");
+    cloth::check(limits, body->m_nodes.size(), cloth::softBodyName(*body));
+    Entry& entry = m_entries[body];
+    entry.limits.reset();
+    if (!limits.empty()) entry.limits = limits;
+    if (entry.step) tryBuild(*body, entry);
+}
+
+void btGnnSoftBodySolver::setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration) {
+    if (!body) throw ArgumentError("setGoals()", "the soft body is null", "create it first");
+    checkGoals(*body, goals, duration);
+    Entry& entry = m_entries[body];
+    goalsOf(*body, entry);
+    constexpr double kJump = 0.5;  // m: nobody moves as far between the end of a step and the next
+    const double jump = std::sqrt((goals.x0 - entry.goals->now()).rowwise().squaredNorm().mean());
+    if (entry.goals->given() && jump > kJump)
+        say(cloth::softBodyName(*body) +
+            ": its goals jumped by more than half a metre between two steps, and drag the cloth. "
+            "Remedy: let x0 be the x1 of before; call teleport() where the character was put "
+            "elsewhere");
+    const bool moves = goals.x1 != entry.goals->now();
+    entry.goals->set(std::move(goals), duration);
+    if (entry.step) entry.step->setGoals(entry.goals);
+    if (moves && entry.stepping == Stepping::cloth && body->getActivationState() == ISLAND_SLEEPING)
+        body->activate();
+}
+
+cloth::RootMotion& btGnnSoftBodySolver::rootOf(Entry& entry) {
+    if (!entry.root) entry.root = std::make_shared<cloth::RootMotion>();
+    if (entry.step) entry.step->setRoot(entry.root);
+    return *entry.root;
+}
+
+void btGnnSoftBodySolver::setInertia(btSoftBody* body, double linear, double angular) {
+    if (!body) throw ArgumentError("setInertia()", "the soft body is null", "create it first");
+    cloth::check_range(cloth::softBodyName(*body) + ": linear inertia", linear, 0.0, 1.0);
+    cloth::check_range(cloth::softBodyName(*body) + ": angular inertia", angular, 0.0, 1.0);
+    rootOf(m_entries[body]).setInertia(linear, angular);
+}
+
+void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& from,
+                                        const btTransform& to, double duration) {
+    if (!body) throw ArgumentError("setRootMotion()", "the soft body is null", "create it first");
+    if (!isFinite(from) || !isFinite(to) || !(duration >= 0.0) || std::isinf(duration))
+        throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
+                            "a pose or the duration is not finite",
+                            "check the animation before handing it over");
+    rootOf(m_entries[body]).set(cloth::toPose(from), cloth::toPose(to), duration);
+    if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
+}
+
+void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
+                                   btGnnTeleport kind) {
+    if (!body) throw ArgumentError("teleport()", "the soft body is null", "create it first");
+    if (!isFinite(motion))
+        throw ArgumentError(cloth::softBodyName(*body) + ": teleport()", "the motion is not finite",
+                            "give the motion from the old place to the new one");
+    Entry& entry = m_entries[body];
+    const bool reset = kind == btGnnTeleport::reset && entry.limits;
+    const cloth::Points places = reset ? goalsOf(*body, entry)->now() : cloth::nodePositions(*body);
+    for (int i = 0; i < body->m_nodes.size(); ++i) {
+        btSoftBody::Node& node = body->m_nodes[i];
+        node.m_x = motion * cloth::toBullet(cloth::Vec3(places.row(i)));
+        node.m_q = node.m_x;
+        node.m_v = kind == btGnnTeleport::reset ? btVector3(0, 0, 0) : motion.getBasis() * node.m_v;
+    }
+    if (entry.goals) entry.goals->move(cloth::toPose(motion));
+    if (entry.step) entry.step->restart();
+    body->updateNormals();
+    body->updateBounds();
+    if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
 }
 
 btGnnSoftBodySolver::Stepping btGnnSoftBodySolver::steppingOf(const btSoftBody* body) const {

@@ -18,6 +18,8 @@
 
 namespace cloth {
 
+class BodyGoals;
+class RootMotion;
 class SoftBodyStep;
 
 /// Makes the stepper of one garment. The garment outlives the stepper.
@@ -29,6 +31,11 @@ using StepperFactory = std::function<std::unique_ptr<Stepper>(const Garment&)>;
 enum class btGnnFriction {
     bullet,   ///< the larger of Coulomb's friction and Bullet's brake, see slidingFriction.h
     coulomb,  ///< Coulomb's coefficient, and nothing else
+};
+
+enum class btGnnTeleport {
+    keep,  ///< the cloth keeps its shape and its velocities
+    reset  ///< the cloth is where its goals are, and rests
 };
 
 struct btGnnSolverSettings {
@@ -101,6 +108,7 @@ struct btGnnSolverStatus {
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
 ///   act as in Bullet. The cloth is as stiff as its m_materials say, by the rule of
 ///   materialFabric.h, or has a fabric in SI units: attach() and btGnnSolverSettings::fabric.
+/// - Skinned goals, as games paint them on clothes: setGoalLimits() and setGoals().
 /// - Cloth that rests sleeps and costs nothing until something about it changes, see ClothSleep.
 /// - The rest shape is the shape of the first step. Later transform() and translate() move the
 ///   cloth and leave its rest shape; scale() and setRestLengthScale() by more than 10 % scale it.
@@ -150,6 +158,46 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// Call before the object is deleted.
     void removeAnimatedObstacle(const btCollisionObject* object);
 
+    /// Limits the cloth of a body by skinned goals, see cloth::GoalLimits; empty limits: no more.
+    /// To be set once: its stepper is built anew. attach() with a garment that has limits does the
+    /// same.
+    /// @param limits  one value per node in each array, or none
+    /// @throws cloth::ArgumentError if the body is null, an array has a wrong size or a value is
+    /// out
+    ///         of range
+    void setGoalLimits(btSoftBody* body, const cloth::GoalLimits& limits);
+    /// Gives the goals of the body's nodes before each stepSimulation(), as setAnimatedObstacle()
+    /// gives skin. Goals that are not given anew stand still. Before they are given for the first
+    /// time, they are where the nodes are then.
+    ///
+    /// In an obstacle there is no room for cloth: it stays outside, beyond its limits if need be.
+    /// @param goals     now and after `duration` seconds (|nodes| x 3, m, world frame)
+    /// @param duration  usually the time of the stepSimulation() that follows; 0: one sub-step
+    /// @throws cloth::ArgumentError if the body is null, an array has a wrong size or a number is
+    /// not
+    ///         finite
+    void setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration = 0.0);
+    /// How much of its root's motion a body's cloth feels, 1 until set: with less, cloth of a
+    /// character that runs or rides hangs and swings as on one that goes slowly. The rest of the
+    /// motion carries the cloth along. Gravity, goals, pins and obstacles count as ever.
+    /// @param linear, angular  shares of displacement and turn, 0 to 1
+    /// @throws cloth::ArgumentError if the body is null or a share is out of range
+    void setInertia(btSoftBody* body, double linear, double angular);
+    /// Gives the root's motion before each stepSimulation(), such as that of the character's hips;
+    /// a root that is not given anew stands still.
+    /// @param from, to  now and after `duration` seconds, in the world
+    /// @throws cloth::ArgumentError if the body is null or a number is not finite
+    void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
+                       double duration = 0.0);
+    /// Moves a body at once, without what cloth does when it is dragged there: where its character
+    /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
+    ///
+    /// keep: all nodes are moved by `motion`, and what they did turns with them. reset: they are
+    /// put on their goals, moved by `motion`, and rest.
+    /// @throws cloth::ArgumentError if the body is null or the motion is not finite
+    void teleport(btSoftBody* body, const btTransform& motion,
+                  btGnnTeleport kind = btGnnTeleport::keep);
+
     const btGnnSolverStatus& status() const { return m_status; }
     void clearMessages() { m_status.messages.clear(); }
 
@@ -173,6 +221,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null
         std::optional<cloth::Fabric> fabric;          ///< the body's own
         cloth::StepperFactory factory;                ///< the body's own, else null
+        std::optional<cloth::GoalLimits> limits;      ///< by the user
+        std::shared_ptr<cloth::RootMotion> root;      ///< null: nobody asked for it
+        std::shared_ptr<cloth::BodyGoals> goals;      ///< null: nobody asked for goals
         cloth::BulletHandover handover;
         size_t topology = 0;
         std::vector<double> restLengths;  ///< of its links at the last step (m)
@@ -194,6 +245,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     };
     void stepTogether(const std::vector<Stepped>& cloth);
     void finishStep(const Stepped& cloth);
+    const std::shared_ptr<cloth::BodyGoals>& goalsOf(const btSoftBody& body, Entry& entry);
+    void joinGoals(btSoftBody& body, Entry& entry);
+    cloth::RootMotion& rootOf(Entry& entry);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;

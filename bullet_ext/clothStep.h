@@ -26,6 +26,10 @@ struct ClothStep {
     const AnchoredBodies* anchored = nullptr;
 };
 
+/// Nodes that goals hold at the end of the step: that are driven, or at a limit. What they take is
+/// no body's.
+std::vector<int> nodesHeldByGoals(const ClothStep& step);
+
 /// Whether all that holds the cloth can be moved by it.
 bool floatsFreely(const btSoftBody& body, const ClothStep& step);
 

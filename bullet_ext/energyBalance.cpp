@@ -92,7 +92,8 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
     constexpr double kSlow = 0.5;    // m/s: motion of all of the cloth that nobody would miss
     constexpr double kTell = 10.0;   // times that energy
     const std::optional<double> energy = step.stepper.internal_energy(step.to.x);
-    if (!energy || !(allSolidsKnown(step) || obstaclesStand(step.boundary))) {
+    if (!energy || step.garment.has_goals() ||
+        !(allSolidsKnown(step) || obstaclesStand(step.boundary))) {
         forget();
         return {};
     }

@@ -21,7 +21,8 @@ namespace cloth {
 /// what is much more than that is taken.
 ///
 /// The fabric takes part in the balance, so its energy has to be known, and all that the cloth
-/// touches: without Stepper::internal_energy(), or near animated meshes, nothing is done.
+/// touches: without Stepper::internal_energy(), near animated meshes, or with skinned goals,
+/// nothing is done.
 class EnergyBalance {
  public:
     /// A body that an impulse is planned for.

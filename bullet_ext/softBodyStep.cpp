@@ -44,16 +44,22 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
       m_reactions(body),
       m_sleep(body, sleep_motion),
       m_sliding_friction(sliding_friction) {
-    const int count = body.m_nodes.size();
-    m_shown.x = nodePositions(body);
+    restart();
+    m_impulse = Points::Zero(body.m_nodes.size(), 3);
+}
+
+void SoftBodyStep::restart() {
+    const int count = m_body.m_nodes.size();
+    m_shown.x = nodePositions(m_body);
     m_shown.v.resize(count, 3);
     m_written.resize(static_cast<size_t>(count) * 6);
     for (int i = 0; i < count; ++i) {
-        m_shown.v.row(i) = toVec3(body.m_nodes[i].m_v);
-        store(body.m_nodes[i].m_x, &m_written[static_cast<size_t>(i) * 6]);
-        store(body.m_nodes[i].m_v, &m_written[static_cast<size_t>(i) * 6 + 3]);
+        const btSoftBody::Node& node = m_body.m_nodes[i];
+        m_shown.v.row(i) = toVec3(node.m_v);
+        store(node.m_x, &m_written[static_cast<size_t>(i) * 6]);
+        store(node.m_v, &m_written[static_cast<size_t>(i) * 6 + 3]);
     }
-    m_impulse = Points::Zero(count, 3);
+    m_cloth_step.valid = false;
 }
 
 bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
@@ -65,6 +71,8 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     m_reach = reach;
     m_result = Result();
     m_begun = false;
+    if (m_goals) m_goals->beginStep(h);
+    if (m_root) m_root->beginStep(h);
     // Nodes changed since the solver looked at them: next step.
     if (m_body.m_nodes.size() != m_shown.x.rows()) return false;
     m_result.restored_nodes = restoreNodes();
@@ -248,6 +256,10 @@ Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles) {
     std::vector<const btCollisionObject*> owners;
     boundary.obstacles = obstacles.near(m_body, low, high, span, &owners);
     boundary.trees = obstacles.trees();
+    if (m_garment->has_goals() && m_goals) {
+        boundary.goals = m_goals->during(span);
+        m_result.without_goals = !m_goals->given();
+    }
     m_solids = obstacles.solidsNear(m_body, low, high, span);
     m_pinched.makeRoom(*m_garment, m_cloth_step.from, m_solids, owners, boundary);
     if (!m_impulse.isZero(0.0)) {
@@ -297,14 +309,24 @@ bool SoftBodyStep::beginClothStep(BulletObstacles& obstacles) {
     startClothStep(m_result.steps == 0);
     m_cloth_box = boxAhead(m_cloth_step.from, m_cloth_step.length, m_reach);
     m_boundary = boundaryOfClothStep(obstacles);
+    carryClothStep();
     const bool now =
         std::abs(m_cloth_step.begin) + std::abs(m_cloth_step.length - m_h) < 1e-3 * m_h;
     m_hang = now && m_anchored.begin(m_body, *m_garment, m_cloth_step.length);
     return true;
 }
 
+/// What of its root's motion the cloth does not feel.
+void SoftBodyStep::carryClothStep() {
+    m_carried = m_cloth_step.from;
+    if (!m_root) return;
+    const Pose motion =
+        m_root->carry({m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
+    if (motion.matrix() != Pose::Identity().matrix()) carryStart(motion, m_boundary, m_carried);
+}
+
 void SoftBodyStep::solve() {
-    const ClothState& from = m_cloth_step.from;
+    const ClothState& from = m_carried;
     StageTimes times;
     do {
         m_solved = from;
@@ -317,12 +339,12 @@ void SoftBodyStep::solve() {
 }
 
 void SoftBodyStep::endClothStep(BulletObstacles& obstacles) {
-    const ClothState& from = m_cloth_step.from;
+    const ClothState& from = m_carried;
     if (m_hang && m_report.finite) m_anchored.place(m_solved);
     if (m_report.finite)
         m_cloth_step.to = std::move(m_solved);
     else
-        m_cloth_step.to = from;
+        m_cloth_step.to = m_cloth_step.from;
     m_cloth_step.to.time = from.time + m_cloth_step.length;
     // Impulses of friction are handed on by themselves; where there is no body, it is in the
     // balance.

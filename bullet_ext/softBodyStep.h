@@ -2,12 +2,15 @@
 
 #include <functional>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "bullet_ext/anchoredBodies.h"
+#include "bullet_ext/bodyGoals.h"
 #include "bullet_ext/bulletObstacles.h"
 #include "bullet_ext/clothSleep.h"
 #include "bullet_ext/pinchedCloth.h"
+#include "bullet_ext/rootMotion.h"
 #include "bullet_ext/twoWayCoupling.h"
 #include "gnn/deadline.h"
 #include "gnn/stepper.h"
@@ -36,6 +39,14 @@ class SoftBodyStep {
     SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garment,
                  std::unique_ptr<Stepper> stepper, double sleep_motion, bool sliding_friction);
 
+    /// Skinned goals of the garment's vertices; asked for if it has limits. Keeps a reference.
+    void setGoals(std::shared_ptr<BodyGoals> goals) { m_goals = std::move(goals); }
+    /// Keeps a reference. @param root  null: the cloth feels all of its motion
+    void setRoot(std::shared_ptr<RootMotion> root) { m_root = std::move(root); }
+
+    /// Goes on from where the nodes are, pins too: nothing was dragged there.
+    void restart();
+
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
@@ -46,12 +57,13 @@ class SoftBodyStep {
     const Vec3& lastReaction() const { return m_reactions.lastImpulse(); }
 
     struct Result {
-        int steps = 0;              ///< steps that the stepper made, 0 within a cloth step
-        int failed_steps = 0;       ///< steps that it could not make: the cloth holds its shape
-        int restored_nodes = 0;     ///< nodes that were not finite and were put back
-        int caught_nodes = 0;       ///< nodes that pass through a solid, for want of room
-        bool calmed = false;        ///< cloth and bodies would have made much energy
-        int stretched_anchor = -1;  ///< node that an anchor holds farther than the cloth reaches
+        int steps = 0;               ///< steps that the stepper made, 0 within a cloth step
+        int failed_steps = 0;        ///< steps that it could not make: the cloth holds its shape
+        int restored_nodes = 0;      ///< nodes that were not finite and were put back
+        int caught_nodes = 0;        ///< nodes that pass through a solid, for want of room
+        bool calmed = false;         ///< cloth and bodies would have made much energy
+        bool without_goals = false;  ///< the garment has limits, and goals were never given
+        int stretched_anchor = -1;   ///< node that an anchor holds farther than the cloth reaches
     };
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
     /// the world step and writes the nodes. Obstacles are looked for within `reach` (m):
@@ -67,8 +79,8 @@ class SoftBodyStep {
     /// are independent; the other functions change the world.
     /// @return  false: nothing is to be stepped, as in a paused body
     bool begin(double h, BulletObstacles& obstacles, double reach);
-    /// Whether the order in which this cloth and other independent cloth are stepped does not count:
-    /// the stepper is independent, and this cloth moves no body of the world.
+    /// Whether the order in which this cloth and other independent cloth are stepped does not
+    /// count: the stepper is independent, and this cloth moves no body of the world.
     bool isIndependent(const BulletObstacles& obstacles) const;
     /// The next cloth step; false: the cloth is past the end of the world step.
     bool beginClothStep(BulletObstacles& obstacles);
@@ -104,6 +116,7 @@ class SoftBodyStep {
     static Box boxAhead(const ClothState& state, double time, double reach);
     Boundary boundaryOfClothStep(BulletObstacles& obstacles);
     void startClothStep(bool first_of_step);
+    void carryClothStep();
     bool looksAhead() const;
     void slowDown(BulletObstacles& obstacles);
     void showClothStep();
@@ -114,6 +127,9 @@ class SoftBodyStep {
     btSoftBody& m_body;
     std::unique_ptr<const Garment> m_garment;
     std::unique_ptr<Stepper> m_stepper;
+    std::shared_ptr<BodyGoals> m_goals;
+    std::shared_ptr<RootMotion> m_root;
+    ClothState m_carried;  ///< where the present cloth step starts, with what carries it
     Deadline m_deadline;
     StepReport m_report;
     TwoWayCoupling m_reactions;

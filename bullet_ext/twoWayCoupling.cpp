@@ -137,6 +137,11 @@ void TwoWayCoupling::findHolders(const ClothStep& step) {
         m_held[static_cast<size_t>(pin)] = 1;
         m_touches.solid[static_cast<size_t>(pin)] = -1;
     }
+    for (const int node : nodesHeldByGoals(step)) {
+        m_holder[static_cast<size_t>(node)] = nullptr;
+        m_held[static_cast<size_t>(node)] = 1;
+        m_touches.solid[static_cast<size_t>(node)] = -1;
+    }
     holdByAnchors();
 }
 

@@ -50,6 +50,10 @@ struct StepReport {
     int vertices_in_ignored_limbs = 0;  ///< vertices inside a limb that they ignore, see
                                         ///< LimbOverlap; max_penetration does not count them
     double max_ignored_depth = 0.0;     ///< how deep the deepest of them is inside (m)
+    /// Skinned goals: vertices that end beyond their limits because an obstacle is in the way, and
+    /// how far the farthest of them is beyond (m).
+    int vertices_beyond_goals = 0;
+    double max_goal_excess = 0.0;
     int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
                       ///< with self-contact on only
     Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)

@@ -121,6 +121,13 @@ JointTransforms AnimatedBody::joint_transforms(double time) const {
     return cloth::joint_transforms(*m_body, pose(time));
 }
 
+std::vector<SkinMatrix> AnimatedBody::skin_matrices(double time) const {
+    std::vector<SkinMatrix> matrices;
+    for (const Eigen::Isometry3d& transform : joint_transforms(time))
+        matrices.emplace_back(transform.matrix().topRows<3>());
+    return matrices;
+}
+
 Points AnimatedBody::vertices(double time) const {
     return m_body->skin(joint_transforms(time));
 }

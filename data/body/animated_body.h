@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "data/body/retarget.h"
+#include "data/body/skinning.h"
 #include "data/core/moving_surface.h"
 
 namespace cloth {
@@ -47,6 +48,8 @@ class AnimatedBody : public MovingSurface {
     BodyPose pose(double time) const;
     /// Where each joint moves the skin (|joints|); identities at time 0.
     JointTransforms joint_transforms(double time) const;
+    /// The same as matrices.
+    std::vector<SkinMatrix> skin_matrices(double time) const;
 
  private:
     BodyPose motion_pose(double motion_time) const;

@@ -48,29 +48,56 @@ Eigen::Affine3d SkinnedCharacter::local_transform(const CharacterNode& node, dou
            Eigen::Scaling(sample(track.scale_times, track.scales, time));
 }
 
+SkinnedCharacter::Transforms SkinnedCharacter::local_transforms(double time) const {
+    Transforms local;
+    for (const CharacterNode& node : m_rig.nodes) local.push_back(local_transform(node, time));
+    return local;
+}
+
+SkinnedCharacter::Transforms SkinnedCharacter::rest_transforms() const {
+    Transforms local;
+    for (const CharacterNode& node : m_rig.nodes) local.push_back(node.rest);
+    return local;
+}
+
+/// From the frames of the meshes to the world, in the file's units.
 /// @param local  of each node, relative to its parent
-Points SkinnedCharacter::skin(const std::vector<Eigen::Affine3d>& local) const {
-    std::vector<Eigen::Affine3d> world;
+SkinnedCharacter::Transforms SkinnedCharacter::joint_transforms(const Transforms& local) const {
+    Transforms world, joints;
     for (size_t n = 0; n < m_rig.nodes.size(); ++n) {
         const int parent = m_rig.nodes[n].parent;
         world.push_back(parent < 0 ? local[n] : world[parent] * local[n]);
     }
-    std::vector<SkinMatrix> matrices;
     for (const CharacterJoint& joint : m_rig.joints)
-        matrices.emplace_back(m_scale * (world[joint.node] * joint.offset).matrix().topRows<3>());
+        joints.push_back(world[joint.node] * joint.offset);
+    return joints;
+}
+
+Points SkinnedCharacter::skin(const Transforms& local) const {
+    std::vector<SkinMatrix> matrices;
+    for (const Eigen::Affine3d& joint : joint_transforms(local))
+        matrices.emplace_back(m_scale * joint.matrix().topRows<3>());
     return skin_points(m_rig.rest, m_rig.weights, matrices);
 }
 
+std::vector<SkinMatrix> SkinnedCharacter::skin_matrices(double time) const {
+    const Transforms from = joint_transforms(rest_transforms());
+    const Transforms to = joint_transforms(local_transforms(time));
+    std::vector<SkinMatrix> matrices;
+    for (size_t j = 0; j < from.size(); ++j) {
+        SkinMatrix matrix = (to[j] * from[j].inverse()).matrix().topRows<3>();
+        matrix.col(3) *= m_scale;
+        matrices.push_back(matrix);
+    }
+    return matrices;
+}
+
 Points SkinnedCharacter::vertices(double time) const {
-    std::vector<Eigen::Affine3d> local;
-    for (const CharacterNode& node : m_rig.nodes) local.push_back(local_transform(node, time));
-    return skin(local);
+    return skin(local_transforms(time));
 }
 
 Points SkinnedCharacter::rest_vertices() const {
-    std::vector<Eigen::Affine3d> local;
-    for (const CharacterNode& node : m_rig.nodes) local.push_back(node.rest);
-    return skin(local);
+    return skin(rest_transforms());
 }
 
 }  // namespace cloth

@@ -31,6 +31,9 @@ class SkinnedCharacter : public MovingSurface {
     /// The skin as the file places it (|V| x 3, m), before any animation: the pose that garments
     /// are modelled on.
     Points rest_vertices() const;
+    /// Where each joint moves the skin of rest_vertices() at `time` (s): what is worn on it, and
+    /// has the skin's weights, comes along.
+    std::vector<SkinMatrix> skin_matrices(double time) const;
     double duration() const override { return m_rig.duration; }
 
     /// Skeleton, skin weights and animation as the file has them.
@@ -38,7 +41,11 @@ class SkinnedCharacter : public MovingSurface {
 
  private:
     Eigen::Affine3d local_transform(const CharacterNode& node, double time) const;
-    Points skin(const std::vector<Eigen::Affine3d>& local) const;
+    using Transforms = std::vector<Eigen::Affine3d>;
+    Transforms local_transforms(double time) const;
+    Transforms rest_transforms() const;
+    Transforms joint_transforms(const Transforms& local) const;
+    Points skin(const Transforms& local) const;
 
     CharacterRig m_rig;
     std::shared_ptr<const Faces> m_faces;

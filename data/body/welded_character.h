@@ -21,6 +21,11 @@ class WeldedCharacter : public MovingSurface {
 
     /// As the file places it, before any animation: the pose that garments are modelled on.
     const TriMesh& rest() const { return m_rest.mesh; }
+    const SkinWeights& weights() const { return m_weights; }  ///< of its vertices
+    /// See SkinnedCharacter.
+    std::vector<SkinMatrix> skin_matrices(double time) const {
+        return m_character.skin_matrices(time);
+    }
     double height() const;  ///< of that pose (m)
 
     std::shared_ptr<const Faces> faces() const override { return m_faces; }
@@ -30,6 +35,7 @@ class WeldedCharacter : public MovingSurface {
  private:
     SkinnedCharacter m_character;
     WeldedMesh m_rest;
+    SkinWeights m_weights;
     std::shared_ptr<const Faces> m_faces;
 };
 

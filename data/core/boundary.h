@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "data/core/pose.h"
+#include "data/core/skin_goals.h"
 #include "data/core/types.h"
 
 namespace cloth {
@@ -61,6 +62,7 @@ struct Boundary {
     Points pin_targets;                  ///< |pins| x 3 (m): where the garment's pins are at t + dt
     Vec3 gravity = Vec3(0, -9.81, 0);    ///< (m/s^2)
     Points accelerations;                ///< |V| x 3 (m/s^2) such as wind, or empty
+    SkinGoals goals;                     ///< of garments with goal limits; else not looked at
     std::vector<LimbSet> ignored_limbs;  ///< |V|: limbs and solids that a vertex does not touch, or
                                          ///< empty; LimbOverlap adds limbs
     /// Hierarchies of the mesh obstacles that all garments of a world share; null: whoever queries

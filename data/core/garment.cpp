@@ -86,11 +86,21 @@ VectorX Garment::inverse_masses() const {
 }
 
 Garment Garment::with_fabric(const Fabric& fabric) const {
-    return Garment(m_name, m_rest, fabric, m_pins, m_rest_angles_from_mesh);
+    return Garment(m_name, m_rest, fabric, m_pins, m_rest_angles_from_mesh)
+        .with_goals(m_goal_limits);
 }
 
 Garment Garment::with_pins(std::vector<int> pins) const {
-    return Garment(m_name, m_rest, m_fabric, std::move(pins), m_rest_angles_from_mesh);
+    return Garment(m_name, m_rest, m_fabric, std::move(pins), m_rest_angles_from_mesh)
+        .with_goals(m_goal_limits);
+}
+
+Garment Garment::with_goals(GoalLimits limits) const {
+    check(limits, vertex_count(), m_name);
+    Garment garment = *this;
+    garment.m_goal_limits = std::move(limits);
+    garment.m_has_goals = !garment.m_goal_limits.empty();
+    return garment;
 }
 
 }  // namespace cloth

@@ -6,6 +6,7 @@
 
 #include "data/core/fabric.h"
 #include "data/core/mesh.h"
+#include "data/core/skin_goals.h"
 
 namespace cloth {
 
@@ -18,7 +19,8 @@ namespace cloth {
 ///        v3
 using Hinge = std::array<int, 4>;
 
-/// Everything about a piece of cloth that never changes: rest mesh, topology, masses, pins, fabric.
+/// Everything about a piece of cloth that never changes: rest mesh, topology, masses, pins, fabric,
+/// limits of skinned goals.
 /// Built once and shared by const reference; what changes lives in ClothState.
 class Garment {
  public:
@@ -41,6 +43,8 @@ class Garment {
     const VectorX& face_areas() const { return m_face_areas; }                ///< |F| (m^2)
     const VectorX& masses() const { return m_masses; }                        ///< |V| (kg)
     VectorX inverse_masses() const;  ///< |V| (1/kg), 0 for pinned vertices
+    const GoalLimits& goal_limits() const { return m_goal_limits; }  ///< empty: none
+    bool has_goals() const { return m_has_goals; }  ///< whether any of them limits anything
     Eigen::Index vertex_count() const { return m_rest.vertices.rows(); }
     Eigen::Index face_count() const { return m_rest.faces.rows(); }
     double mean_edge_length() const { return m_mean_edge_length; }  ///< at rest (m)
@@ -49,6 +53,9 @@ class Garment {
     Garment with_fabric(const Fabric& fabric) const;
     /// The same garment with other pinned vertices.
     Garment with_pins(std::vector<int> pins) const;
+    /// The same garment with skinned goals.
+    /// @throws ArgumentError if an array has a wrong size or a value is out of range
+    Garment with_goals(GoalLimits limits) const;
 
  private:
     std::string m_name;
@@ -63,6 +70,8 @@ class Garment {
     VectorX m_face_areas;
     VectorX m_masses;
     double m_mean_edge_length = 0.0;
+    GoalLimits m_goal_limits;
+    bool m_has_goals = false;
 };
 
 /// Signed dihedral angle of a hinge (rad): 0 when flat, positive when the faces fold so that their

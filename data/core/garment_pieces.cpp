@@ -1,6 +1,7 @@
 #include "data/core/garment_pieces.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "data/core/errors.h"
@@ -27,6 +28,35 @@ void check_can_merge(const std::vector<Garment>& garments) {
                                     garments.front().name(),
                                 "make all with rest_angles, or none");
     }
+}
+
+/// The limits of all garments, one after the other; `otherwise` for those that have none.
+VectorX merged(const std::vector<Garment>& garments, VectorX GoalLimits::*limit, double otherwise) {
+    Eigen::Index vertices = 0;
+    bool any = false;
+    for (const Garment& garment : garments) {
+        vertices += garment.vertex_count();
+        any = any || (garment.goal_limits().*limit).size() > 0;
+    }
+    if (!any) return {};
+    VectorX all = VectorX::Constant(vertices, otherwise);
+    vertices = 0;
+    for (const Garment& garment : garments) {
+        const VectorX& own = garment.goal_limits().*limit;
+        if (own.size() > 0) all.segment(vertices, own.size()) = own;
+        vertices += garment.vertex_count();
+    }
+    return all;
+}
+
+GoalLimits merged_limits(const std::vector<Garment>& garments) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    GoalLimits limits;
+    limits.max_distance = merged(garments, &GoalLimits::max_distance, infinity);
+    limits.backstop = merged(garments, &GoalLimits::backstop, infinity);
+    limits.drive_stiffness = merged(garments, &GoalLimits::drive_stiffness, 0.0);
+    limits.drive_damping = merged(garments, &GoalLimits::drive_damping, 0.0);
+    return limits;
 }
 
 }  // namespace
@@ -77,7 +107,8 @@ MergedGarments merge_garments(const std::string& name, const std::vector<Garment
     }
     first_vertex.push_back(static_cast<int>(vertices));
     return {Garment(name, std::move(mesh), garments.front().fabric(), std::move(pins),
-                    garments.front().rest_angles_from_mesh()),
+                    garments.front().rest_angles_from_mesh())
+                .with_goals(merged_limits(garments)),
             std::move(first_vertex)};
 }
 

@@ -12,7 +12,7 @@ std::vector<int> garment_pieces(const Garment& garment);
 /// Several garments in one, to be worn in layers: one solver steps them together, and with
 /// self-contact on (SelfContactSettings) they keep off each other.
 struct MergedGarments {
-    Garment garment;                ///< vertices, faces and pins garment by garment
+    Garment garment;                ///< vertices, faces, pins and goal limits garment by garment
     std::vector<int> first_vertex;  ///< of each, and at the end the number of all vertices
 };
 

@@ -1,9 +1,9 @@
 #include "gnn/train/body_world.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
-#include <vector>
+
+#include "data/body/garment_skinning.h"
 
 namespace cloth {
 
@@ -47,26 +47,6 @@ Motion motion_from(const Motion& motion, int frame, int least) {
     const int first = std::clamp(frame, 0, std::max(0, motion.frame_count() - least));
     part.frames.erase(part.frames.begin(), part.frames.begin() + first);
     return part;
-}
-
-void for_each_skin_neighbour(const Points& garment, const Points& skin,
-                             const std::function<void(Eigen::Index, Eigen::Index, double)>& use) {
-    const double width = 0.03;
-    VectorX squared(skin.rows());
-    std::vector<std::pair<Eigen::Index, double>> near;
-    for (Eigen::Index i = 0; i < garment.rows(); ++i) {
-        squared = (skin.rowwise() - garment.row(i)).rowwise().squaredNorm();
-        const double nearest = squared.minCoeff();
-        double sum = 0.0;
-        near.clear();
-        for (Eigen::Index k = 0; k < squared.size(); ++k) {
-            const double exponent = (squared[k] - nearest) / (2.0 * width * width);
-            if (exponent > 9.0) continue;
-            near.emplace_back(k, std::exp(-exponent));
-            sum += near.back().second;
-        }
-        for (const auto& [vertex, weight] : near) use(i, vertex, weight / sum);
-    }
 }
 
 Points carried_along(const Points& garment, const Points& skin_before, const Points& skin_after) {

@@ -18,15 +18,6 @@ struct SkinnedStartSettings {
     void check() const;
 };
 
-/// How much the vertices of a garment (|V| x 3, m, on the body's rest pose) follow each joint: the
-/// mean of the skin's weights around the nearest point of the skin.
-SkinWeights weights_from_skin(const Points& garment, const Body& body);
-
-/// A garment as worn on the body's rest pose (|V| x 3, m), carried into its pose at a time (s) by
-/// linear blend skinning.
-Points pose_garment(const Points& worn, const SkinWeights& weights, const AnimatedBody& body,
-                    double time);
-
 /// The garment posed with the body at a time (s), with noise, and pushed out of the body.
 /// @param worn  on the body's rest pose (|V| x 3, m)
 /// @param dt    of the velocity (s)

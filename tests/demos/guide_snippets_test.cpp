@@ -6,7 +6,9 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
+#include "bullet_ext/softBodyGarment.h"
 #include "collision/response/embedded_mesh.h"
+#include "data/body/garment_skinning.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
@@ -98,6 +100,22 @@ TEST_F(GuideSnippets, Fabric) {
     solver.attach(body, cloth::Fabric::real_cotton());
     EXPECT_EQ(solver.garmentOf(body)->fabric().mu, cloth::Fabric::real_cotton().mu);
     expect_stepped();
+}
+
+TEST_F(GuideSnippets, ClothesThatFollowTheSkin) {
+    const double now = 0.0, dt = 1.0 / 30.0;
+    const cloth::WeldedCharacter character(cloth::model_path("glTF2/simple_skin/simple_skin.gltf"),
+                                           {}, 1e-4);
+    const cloth::Points worn = cloth::nodePositions(*body);
+    cloth::GoalLimits limits;
+    limits.max_distance.setConstant(body->m_nodes.size(), 0.1);  // m
+    limits.backstop.setConstant(body->m_nodes.size(), 0.02);     // m
+    solver.setGoalLimits(body, limits);
+    const cloth::GarmentSkinning skinning = cloth::skin_garment(worn, character);
+    solver.setGoals(body, cloth::skinned_goals(skinning, character, now, now + dt), dt);
+    world->stepSimulation(static_cast<btScalar>(dt), 0);
+    EXPECT_LT((cloth::nodePositions(*body) - worn).rowwise().norm().maxCoeff(), 0.11);
+    EXPECT_TRUE(solver.status().messages.empty());
 }
 
 TEST_F(GuideSnippets, Status) {

@@ -327,6 +327,31 @@ void WorldMeddler::ask_the_solver(btSoftBody& body) {
     }
 }
 
+void WorldMeddler::set_goals(btSoftBody& body) {
+    const double strange = m_random.one_of<double>({0, 0.1, 1e-9, 1e9, 1e300, nan, -1});
+    const int nodes = body.m_nodes.size() + (m_random.chance(0.1) ? 1 : 0);
+    try {
+        if (m_random.chance(0.3)) {
+            GoalLimits limits;
+            for (VectorX* array : {&limits.max_distance, &limits.backstop, &limits.drive_stiffness,
+                                   &limits.drive_damping})
+                if (m_random.chance(0.5)) array->setConstant(nodes, strange);
+            return m_solver.setGoalLimits(&body, limits);
+        }
+        if (m_random.chance(0.2))
+            return m_solver.teleport(
+                &body, random_transform(m_random, 0.7),
+                m_random.chance(0.5) ? btGnnTeleport::keep : btGnnTeleport::reset);
+        Points x(nodes, 3);
+        for (Eigen::Index k = 0; k < x.size(); ++k) x.data()[k] = m_random.uniform(-1.0, 1.0);
+        SkinGoals goals = SkinGoals::at(x, x);
+        if (m_random.chance(0.3)) goals.x1.array() += strange;
+        if (m_random.chance(0.3)) goals.normal1 = {};
+        m_solver.setGoals(&body, goals, m_random.one_of<double>({0, 1.0 / 60.0, 1e-300, 1e9}));
+    } catch (const ArgumentError&) {
+    }
+}
+
 void WorldMeddler::animate(btRigidBody& body) {
     TriMesh mesh = random_mesh(m_random);
     Points after = mesh.vertices;
@@ -365,6 +390,7 @@ void WorldMeddler::meddle() {
     if (what == 10) return change_topology(body);
     if (what == 11) return anchor(body);
     if (what == 12) return put_to_sleep_or_wake(body);
+    if (m_random.chance(0.5)) return set_goals(body);
     ask_the_solver(body);
 }
 

@@ -38,6 +38,7 @@ class WorldMeddler {
     void anchor(btSoftBody& body);
     void put_to_sleep_or_wake(btSoftBody& body);
     void ask_the_solver(btSoftBody& body);
+    void set_goals(btSoftBody& body);
     void animate(btRigidBody& body);
     void move_rigid_body(btRigidBody& body);
 

@@ -29,7 +29,16 @@ void check_settings(const PotentialSettings& settings) {
     check_range("PotentialSettings.friction_scale", settings.friction_scale, 0.0, 10.0);
     check_range("PotentialSettings.friction_distance", settings.friction_distance, 0.0, 0.1);
     check_range("PotentialSettings.friction_slip_speed", settings.friction_slip_speed, 1e-5, 1.0);
+    check_range("PotentialSettings.goal_stiffness", settings.goal_stiffness, 0.1, 1000.0);
     check_range("PotentialSettings.friction_limit", settings.friction_limit, 0.0, 100.0);
+}
+
+void require_goals(const Garment& garment, const SkinGoals& goals) {
+    if (!are_goals_for(garment.goal_limits(), goals, garment.vertex_count()))
+        throw ArgumentError("boundary.goals",
+                            "are not those of " + garment.name() + ", which has goal limits",
+                            "give each of its " + std::to_string(garment.vertex_count()) +
+                                " vertices a finite goal, and a normal if it has backstops");
 }
 
 void validate_contacts(const SurfaceContacts& contacts, size_t obstacles, const Garment& garment) {
@@ -66,7 +75,8 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
       m_gravity(garment),
       m_inertia(garment),
       m_ridges(garment),
-      m_self_contact(garment, settings.self_contact) {
+      m_self_contact(garment, settings.self_contact),
+      m_goals(garment) {
     check_settings(settings);
 }
 
@@ -80,6 +90,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     require_rows("state.v", state.v.rows(), count);
     if (boundary.accelerations.rows() > 0)
         require_rows("boundary.accelerations", boundary.accelerations.rows(), count);
+    require_goals(*m_garment, boundary.goals);
     validate_contacts(contacts, boundary.obstacles.size(), *m_garment);
 
     m_dt = dt;
@@ -94,6 +105,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
                            m_settings.friction_slip_speed * dt, m_settings.contact_distance,
                            m_settings.contact_weight, m_settings.friction_limit});
     m_self_contact.begin_step(state, dt);
+    m_goals.begin_step(state, boundary.goals, dt, m_settings.goal_stiffness);
     m_force_scale = norm_of_forces_at(state);
 }
 
@@ -143,6 +155,7 @@ EnergyTerms IncrementalPotential::terms(const Points& x) const {
                     m_ridges.value(x, m_settings.contact_weight);
     terms.friction = m_friction.value(x);
     terms.self_contact = m_self_contact.value(x);
+    terms.goals = m_goals.value(x);
     return terms;
 }
 
@@ -166,6 +179,7 @@ double IncrementalPotential::value_gradient(const Points& x, Points& gradient,
                     m_ridges.add_gradient(x, m_settings.contact_weight, gradient);
     terms.friction = m_friction.add_gradient(x, gradient);
     terms.self_contact = m_self_contact.add_gradient(x, gradient);
+    terms.goals = m_goals.add_gradient(x, gradient);
     mask_pins(gradient);
     return terms.total();
 }
@@ -195,6 +209,7 @@ void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>&
     m_contact.add_hessian(x, m_settings.contact_weight, pattern, values);
     m_ridges.add_hessian(x, m_settings.contact_weight, pattern, values);
     m_friction.add_hessian(x, pattern, values);
+    m_goals.add_hessian(x, pattern, values);
     m_self_contact.add_hessian(x, hessian);
 }
 

@@ -10,6 +10,7 @@
 #include "gnn/physics/energy/contact.h"
 #include "gnn/physics/energy/elastic.h"
 #include "gnn/physics/energy/friction.h"
+#include "gnn/physics/energy/goal_energy.h"
 #include "gnn/physics/energy/gravity.h"
 #include "gnn/physics/energy/inertia.h"
 #include "gnn/physics/energy/ridge_energy.h"
@@ -33,6 +34,9 @@ struct PotentialSettings {
     /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
     /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
     double friction_limit = 10.0;
+    /// Of the limits of skinned goals, in units of the fabric's longitudinal stiffness, 0.1 to
+    /// 1000. What it leaves beyond a limit is projected back at the end of a step.
+    double goal_stiffness = 10.0;
     SelfContactSettings self_contact;  ///< off by default
 };
 
@@ -41,8 +45,9 @@ struct EnergyTerms {
     double strain = 0, bending = 0, gravity = 0, inertia = 0;
     double contact = 0;  ///< of vertices and of ridges
     double friction = 0, self_contact = 0;
+    double goals = 0;  ///< limits and drives of skinned goals
     double total() const {
-        return strain + bending + gravity + inertia + contact + friction + self_contact;
+        return strain + bending + gravity + inertia + contact + friction + self_contact + goals;
     }
 };
 
@@ -73,7 +78,8 @@ class IncrementalPotential {
     /// state.x at t, or empty where there is no obstacle. External accelerations and gravity come
     /// from `boundary`.
     /// @param inertia  of the time integration; null: backward Euler
-    /// @throws ArgumentError if an array's size does not fit the garment or dt is not positive
+    /// @throws ArgumentError if an array's size does not fit the garment, the garment has goals and
+    ///         the boundary none for it, or dt is not positive
     void begin_step(const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt,
                     const InertialStep* inertia = nullptr);
@@ -108,6 +114,7 @@ class IncrementalPotential {
     const RidgeEnergy& ridges() const { return m_ridges; }                    ///< of this step
     const FrictionEnergy& friction() const { return m_friction; }             ///< of this step
     const SelfContactEnergy& self_contact() const { return m_self_contact; }  ///< of this step
+    const GoalEnergy& goals() const { return m_goals; }                       ///< of this step
 
     /// Moves a starting guess (|V| x 3, pins in place) that is too near to itself, or has passed
     /// through itself, apart again, and off the obstacles. Without self-contact it does
@@ -134,6 +141,7 @@ class IncrementalPotential {
     RidgeEnergy m_ridges;
     FrictionEnergy m_friction;
     SelfContactEnergy m_self_contact;
+    GoalEnergy m_goals;
 };
 
 }  // namespace cloth

@@ -46,6 +46,7 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
         m_slider_index.push_back(k);
     }
     begin_self_contact(potential.self_contact(), row_of);
+    m_goals.begin_step(potential.goals(), row_of);
 }
 
 void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
@@ -88,6 +89,7 @@ void ContactHessian::linearise(const IncrementalPotential& potential, const Poin
         m_sliders[k].stiffness =
             slider.force / std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
     }
+    if (m_goals.active()) m_goals.linearise(x);
     if (m_self_contacts.empty()) return;
     m_from = x;
     for (size_t k = 0; k < m_self_contacts.size(); ++k) {
@@ -125,7 +127,8 @@ bool ContactHessian::anticipate(const Points& step) {
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
         any = any || contact.stiffness > 0.0;
     }
-    return any;
+    if (m_goals.active()) m_goals.anticipate(step);
+    return any || !m_goals.blocks().empty();
 }
 
 /// Of the point of a ridge, along its normal (m).
@@ -159,6 +162,8 @@ void ContactHessian::for_each_force(const Points& direction, const Visit& visit)
         for (size_t k = 0; k < 4; ++k)
             if (contact.weight[k] != 0.0) visit(contact.row[k], contact.weight[k] * force);
     }
+    for (const GoalHessian::Block& block : m_goals.blocks())
+        visit(block.row, block.stiffness * direction.row(block.row).transpose());
 }
 
 void ContactHessian::add_product(const Points& direction, Points& product) const {
@@ -208,6 +213,12 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
         sliding.noalias() += slider.stiffness * f * f.transpose();
         add(f, slider.normal, -slider.stiffness);
     }
+    for (const GoalHessian::Block& block : m_goals.blocks()) {
+        const Row f = fields.at(block.row);
+        const AffineFields::Weights weights = f * f.transpose();
+        for (int i = 0; i < 3; ++i)
+            for (int j = i; j < 3; ++j) sums[i][j] += block.stiffness(i, j) * weights;
+    }
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
             AffineFields::add(sums[std::min(i, j)][std::max(i, j)], i, j, system);
@@ -222,6 +233,7 @@ void ContactHessian::limit_depth(Points& trial) const {
             trial.row(contact.vertex) += (depth - limit) * contact.normal.transpose();
     }
     if (!m_self_contacts.empty()) m_self->limit_entry(m_from, trial);
+    if (m_goals.active()) m_goals.limit(trial);
 }
 
 }  // namespace cloth

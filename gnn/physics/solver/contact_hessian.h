@@ -5,6 +5,7 @@
 
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/solver/affine_fields.h"
+#include "gnn/physics/solver/goal_hessian.h"
 
 namespace cloth {
 
@@ -24,6 +25,8 @@ namespace cloth {
 /// pair of elements that is near:
 ///
 ///     6 w depth c c'         c = (weight n) of the pair's four vertices
+///
+/// Skinned goals add the blocks of GoalHessian.
 class ContactHessian {
  public:
     /// Takes the contacts and sliders of this step. @param row_of  |V|: free row, -1 for a pin
@@ -46,13 +49,15 @@ class ContactHessian {
     /// system += F' blocks F, F: fields of the free vertices.
     void add_to(const AffineFields& fields, AffineFields::System& system) const;
 
-    /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal.
+    /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal, and those that
+    /// are too far from their goals back.
     void limit_depth(Points& trial) const;
 
-    /// Whether any obstacle, or any other part of the cloth, is near enough to matter.
+    /// Whether any obstacle, or any other part of the cloth, is near enough to matter, or there are
+    /// goals.
     bool active() const {
         return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() ||
-               !m_self_contacts.empty();
+               !m_self_contacts.empty() || m_goals.active();
     }
 
  private:
@@ -103,6 +108,7 @@ class ContactHessian {
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
     const SelfContactEnergy* m_self = nullptr;
+    GoalHessian m_goals;
     Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there is self-contact
 };
 

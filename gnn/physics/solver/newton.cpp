@@ -5,6 +5,7 @@
 #include <string>
 
 #include "data/core/check_range.h"
+#include "gnn/physics/solver/goal_hessian.h"
 
 namespace cloth {
 
@@ -38,6 +39,8 @@ void limit_entry(const IncrementalPotential& potential, const Points& x, Points&
         if (trial_depth > allowed) trial.row(i) += (trial_depth - allowed) * normal;
     }
     potential.self_contact().limit_entry(x, trial);
+    for (const VertexGoal& goal : potential.goals().limits())
+        limit_excess(goal, allowed_excess(goal, x.row(goal.vertex)), trial);
 }
 
 /// The next step length after a trial at `step` with energy `trial`: the minimum of the parabola

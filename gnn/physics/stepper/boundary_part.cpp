@@ -30,12 +30,30 @@ void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
     part.pose1 = interpolate(whole.pose0, whole.pose1, s1);
 }
 
+/// The part [s0, s1] of the way of goals, of which the ends stay as they are.
+void cut(const SkinGoals& whole, double s0, double s1, SkinGoals& part) {
+    const auto between = [](const Points& from, const Points& to, double s, Points& x) {
+        if (s <= 0.0)
+            x = from;
+        else if (s >= 1.0)
+            x = to;
+        else
+            x = (1.0 - s) * from + s * to;
+    };
+    between(whole.x0, whole.x1, s0, part.x0);
+    between(whole.x0, whole.x1, s1, part.x1);
+    if (whole.normal0.rows() != whole.normal1.rows()) return;
+    between(whole.normal0, whole.normal1, s0, part.normal0);
+    between(whole.normal0, whole.normal1, s1, part.normal1);
+}
+
 }  // namespace
 
 void BoundaryPart::begin(const Garment& garment, const ClothState& state, const Boundary& boundary,
                          int count) {
     m_whole = &boundary;
     m_count = count;
+    m_has_goals = garment.has_goals();
     m_part.gravity = boundary.gravity;
     m_part.accelerations = boundary.accelerations;
     m_part.ignored_limbs = boundary.ignored_limbs;
@@ -50,6 +68,7 @@ const Boundary& BoundaryPart::take(int k) {
     const double s1 = static_cast<double>(k + 1) / m_count;
     for (size_t i = 0; i < m_part.obstacles.size(); ++i)
         cut(m_whole->obstacles[i], s0, s1, m_part.obstacles[i]);
+    if (m_has_goals) cut(m_whole->goals, s0, s1, m_part.goals);
     m_part.pin_targets = k + 1 == m_count
                              ? m_whole->pin_targets
                              : Points((1.0 - s1) * m_pins_before + s1 * m_whole->pin_targets);

@@ -5,9 +5,9 @@
 
 namespace cloth {
 
-/// Cuts a step's boundary into equal parts in time. Obstacles, primitive frames and pins move
-/// evenly from where they are at t to where the boundary says they are at t + dt; parts join, and
-/// the last one ends where the step ends, bit for bit.
+/// Cuts a step's boundary into equal parts in time. Obstacles, primitive frames, goals and
+/// pins move evenly from where they are at t to where the boundary says they are at t + dt; parts
+/// join, and the last one ends where the step ends, bit for bit.
 ///
 ///     BoundaryPart part;
 ///     part.begin(garment, state, boundary, 4);
@@ -25,6 +25,7 @@ class BoundaryPart {
  private:
     const Boundary* m_whole = nullptr;
     int m_count = 1;
+    bool m_has_goals = false;
     Boundary m_part;
     Points m_pins_before;  ///< |pins| x 3 (m)
 };

@@ -33,6 +33,8 @@ void add(const StepReport& part, StepReport& report) {
     report.max_entry = std::max(report.max_entry, part.max_entry);
     if (part.tunnelled)
         report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
+    report.vertices_beyond_goals = part.vertices_beyond_goals;
+    report.max_goal_excess = part.max_goal_excess;
     report.tangles = part.tangles;
     report.first_tangle = part.first_tangle;
     report.times += part.times;

@@ -1,6 +1,7 @@
 #include "gnn/physics/stepper/guess.h"
 
 #include <cmath>
+#include <vector>
 
 #include "collision/response/resolve.h"
 
@@ -21,10 +22,20 @@ void place_pins(const Garment& garment, const Boundary& boundary, Points& x) {
         x.row(garment.pins()[k]) = boundary.pin_targets.row(static_cast<Eigen::Index>(k));
 }
 
+void move_to_goals(const Garment& garment, const Boundary& boundary, Points& x) {
+    if (!garment.has_goals()) return;
+    std::vector<VertexGoal> goals;
+    take_goals(garment.goal_limits(), boundary.goals, garment.is_pinned(), 1.0, goals);
+    for (const VertexGoal& goal : goals)
+        x.row(goal.vertex) = goal.within(x.row(goal.vertex)).transpose();
+}
+
 void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt, double contact_distance,
                     Points& x) {
-    projected_extrapolation(state, contacts, dt, contact_distance, x);
+    linear_extrapolation(state, dt, x);
+    move_to_goals(garment, boundary, x);
+    if (!contacts.obstacle.empty()) project_out(contacts, contact_distance, x);
     place_pins(garment, boundary, x);
 }
 
@@ -54,6 +65,7 @@ bool is_valid_step(const Garment& garment, const ClothState& state, const Bounda
     const bool sizes = state.x.rows() == count && state.v.rows() == count &&
                        boundary.pin_targets.rows() == pins &&
                        (accelerations == 0 || accelerations == count) &&
+                       are_goals_for(garment.goal_limits(), boundary.goals, count) &&
                        (boundary.ignored_limbs.empty() ||
                         boundary.ignored_limbs.size() == static_cast<size_t>(count));
     return sizes && std::isfinite(dt) && dt > 0.0 && state.x.allFinite() && state.v.allFinite() &&

@@ -18,8 +18,12 @@ void projected_extrapolation(const ClothState& state, const SurfaceContacts& con
 /// garment.pins()).
 void place_pins(const Garment& garment, const Boundary& boundary, Points& x);
 
-/// Where every solver and network starts: the projected extrapolation with the pins at their
-/// targets.
+/// Moves vertices that are farther from their goals at t + dt than the garment's limits allow, or
+/// behind their backstops, to where they may be.
+void move_to_goals(const Garment& garment, const Boundary& boundary, Points& x);
+
+/// Where every solver and network starts: the extrapolation, moved to within the limits of goals,
+/// projected out of obstacles, with the pins at their targets.
 void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt, double contact_distance, Points& x);
 

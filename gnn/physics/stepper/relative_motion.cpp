@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace cloth {
 namespace {
@@ -57,6 +58,18 @@ double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift
     return (to - from - shift).norm() + std::abs(turn.angle()) * size;
 }
 
+/// How far limits of goals pull vertices that move along with the garment.
+double goal_motion(const Garment& garment, const Boundary& boundary, const Vec3& shift,
+                   const Points& x) {
+    if (!garment.has_goals()) return 0.0;
+    std::vector<VertexGoal> goals;
+    take_goals(garment.goal_limits(), boundary.goals, garment.is_pinned(), 1.0, goals);
+    double farthest = 0.0;
+    for (const VertexGoal& goal : goals)
+        farthest = std::max(farthest, goal.excess(x.row(goal.vertex).transpose() + shift));
+    return farthest;
+}
+
 }  // namespace
 
 double relative_motion(const Garment& garment, const Boundary& boundary, double dt,
@@ -70,6 +83,7 @@ double relative_motion(const Garment& garment, const Boundary& boundary, double 
             boundary.pin_targets.row(static_cast<Eigen::Index>(p)) - state.x.row(garment.pins()[p]);
         farthest = std::max(farthest, (motion - shift).norm());
     }
+    farthest = std::max(farthest, goal_motion(garment, boundary, shift, state.x));
     for (const Obstacle& obstacle : boundary.obstacles)
         farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
                                           ? mesh_motion(obstacle, box, shift)

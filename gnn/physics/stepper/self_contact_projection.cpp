@@ -43,6 +43,10 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
         if (depth < fair_depth || pass + 1 == passes) break;
         push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x, contacts);
     }
+}
+
+void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {
+    if (!m_tools || !x.allFinite()) return;
     const std::vector<Tangle>& tangles = m_tools->tangles.find(x, m_settings.threads);
     report.tangles = static_cast<int>(tangles.size());
     if (!tangles.empty()) report.first_tangle = tangles.front().point;

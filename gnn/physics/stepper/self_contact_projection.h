@@ -20,10 +20,14 @@ class SelfContactProjection {
     /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt; kept up to date
     /// @param distance  of vertices from obstacles (m) that is held
     /// @param x         |V| x 3 (m): positions at t + dt, pins in place
-    /// @param report    max_penetration, tangles and first_tangle are brought up to date
+    /// @param report    max_penetration is brought up to date
     void finish(const Points& x0, Proximity& proximity, const Boundary& boundary, double distance,
                 Points& x, SurfaceContacts& contacts, StepReport& report);
 
+    /// Counts them in `report`, at the end of all.
+    void count_tangles(const Points& x, StepReport& report);
+
+    bool on() const { return m_tools.has_value(); }
     /// What the last finish() had to do.
     const SelfResolveReport& last() const { return m_last; }
 

@@ -42,6 +42,7 @@ StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
       m_proximity(settings.proximity, std::move(trees)),
       m_ridges(garment),
       m_projection(garment),
+      m_goals(garment),
       m_self_contact(garment, settings.potential.self_contact) {
 }
 
@@ -194,11 +195,16 @@ bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits
 void StepSolver::project(const Boundary& boundary, const ClothState& state, StepReport& report) {
     place_pins(*m_garment, boundary, m_x);
     const double distance = m_settings.safety_distance;
+    m_goals.begin_step(boundary.goals);
     const ResolveReport resolved =
-        m_projection.resolve(m_proximity, boundary, distance, m_x, m_contacts);
+        m_goals.finish(m_projection, m_proximity, boundary, distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
     report.max_entry = resolved.max_depth_before;
     m_self_contact.finish(state.x, m_proximity, boundary, distance, m_x, m_contacts, report);
+    if (m_self_contact.on()) m_goals.resolve(m_proximity, boundary, distance, m_x, m_contacts);
+    m_self_contact.count_tangles(m_x, report);
+    report.vertices_beyond_goals = m_goals.last().beyond;
+    report.max_goal_excess = m_goals.last().max_excess;
 }
 
 bool StepSolver::accept(double dt, ClothState& state) {

@@ -6,6 +6,7 @@
 #include "collision/ccd/tunnelling.h"
 #include "collision/proximity/ridge_contacts.h"
 #include "collision/response/contact_projection.h"
+#include "collision/response/goal_projection.h"
 #include "gnn/physics/energy/time_integration.h"
 #include "gnn/physics/solver/newton.h"
 #include "gnn/physics/solver/quasi_newton.h"
@@ -33,8 +34,9 @@ struct StepSettings {
 };
 
 /// One implicit step of a garment: nearest surface points, incremental potential, a start
-/// (projected extrapolation or network), a minimiser, and contact projection, which leaves nothing
-/// inside an obstacle. ClothStepper makes simulations of it.
+/// (projected extrapolation or network), a minimiser, and projections, which leave nothing inside
+/// an obstacle and nothing beyond the limits of skinned goals. ClothStepper makes simulations of
+/// it.
 ///
 /// From a start that is not finite, or of higher energy than the guess, the step starts at the
 /// guess; from a guess of which the energy is not finite, at x_t. Without iterations
@@ -128,6 +130,7 @@ class StepSolver {
     Proximity m_proximity;
     RidgeFinder m_ridges;
     ContactProjection m_projection;
+    GoalProjection m_goals;
     SelfContactProjection m_self_contact;
     SurfaceContacts m_contacts;
     Deadline m_deadline, m_deadline_for_more;

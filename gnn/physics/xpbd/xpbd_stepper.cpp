@@ -31,17 +31,29 @@ const XpbdSettings& checked(const XpbdSettings& settings) {
     return settings;
 }
 
+/// |V| (1/kg): springs do not move pins, nor what stays at its goal; they would be half as stiff
+/// there.
+VectorX movable_masses(const Garment& garment) {
+    VectorX inverse = garment.inverse_masses();
+    const VectorX& distance = garment.goal_limits().max_distance;
+    for (Eigen::Index i = 0; i < distance.size(); ++i)
+        if (distance[i] == 0.0) inverse[i] = 0.0;
+    return inverse;
+}
+
 }  // namespace
 
 XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
                          const ProximitySettings& proximity)
     : m_garment(&garment),
       m_settings(checked(settings)),
-      m_stretch(stretch_springs(garment), garment.inverse_masses(), settings.relaxation),
-      m_bending(bending_springs(garment, settings.bending_angle), garment.inverse_masses(),
+      m_stretch(stretch_springs(garment), movable_masses(garment), settings.relaxation),
+      m_bending(bending_springs(garment, settings.bending_angle), movable_masses(garment),
                 settings.relaxation),
       m_proximity(proximity),
       m_resolver(garment),
+      m_goal_resolver(garment),
+      m_goals(garment),
       m_self_planes(garment, settings.self_contact),
       m_self_contact(garment, settings.self_contact) {
 }
@@ -66,6 +78,8 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
     const Clock::time_point contact = Clock::now();
     resolve(boundary, dt, report);
     if (m_settings.self_contact.on()) finish_self_contact(boundary, dt, state, report);
+    m_self_contact.count_tangles(m_x, report);
+    if (m_garment->has_goals()) finish_goals(dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
     return report.finite ? report : StepReport::failed();
@@ -97,6 +111,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
     m_self_planes.begin_step(state, dt);
+    m_goals.begin_step(boundary.goals, dt, m_settings.substeps);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;
     if (same_points(state.x, m_last_x))
@@ -129,11 +144,15 @@ void XpbdStepper::run(const Boundary& boundary, double dt, const Points& x0) {
         m_planes.recover(m_p);
         m_before = m_p;
         move_freely(boundary, dt / m_settings.substeps);
+        m_goals.begin_substep(index);
+        m_goals.drive(m_before, m_p);
+        m_goals.project(m_p);
         move_pins(boundary, x0, static_cast<double>(index) / m_settings.substeps);
         for (int k = 0; k < m_settings.iterations; ++k) {
             m_stretch.relax(m_p, k == 0);
             m_bending.relax(m_p, k == 0);
             m_self_planes.project(m_p);
+            m_goals.project(m_p);
             m_planes.project(m_before, m_p);
         }
         m_w = (m_settings.substeps / dt) * (m_p - m_before);
@@ -163,15 +182,25 @@ void XpbdStepper::finish_self_contact(const Boundary& boundary, double dt, const
                                       StepReport& report) {
     m_v = m_x;
     m_self_contact.finish(state.x, m_proximity, boundary, safety_distance, m_x, m_contacts, report);
+    m_goal_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
     for (Eigen::Index i = 0; i < m_x.rows(); ++i)
         if (m_x.row(i) != m_v.row(i)) m_w.row(i).head<3>() = (m_x.row(i) - state.x.row(i)) / dt;
+}
+
+/// Vertices that goals moved after the last substep go on with their mean velocity.
+void XpbdStepper::finish_goals(double dt, const ClothState& state, StepReport& report) {
+    for (const int i : m_goal_resolver.moved())
+        m_w.row(i).head<3>() = (m_x.row(i) - state.x.row(i)) / dt;
+    report.vertices_beyond_goals = m_goal_resolver.last().beyond;
+    report.max_goal_excess = m_goal_resolver.last().max_excess;
 }
 
 /// Contact projection; vertices that it moved keep no velocity into the surface.
 void XpbdStepper::resolve(const Boundary& boundary, double dt, StepReport& report) {
     place_pins(*m_garment, boundary, m_x);
+    m_goal_resolver.begin_step(boundary.goals);
     const ResolveReport resolved =
-        m_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
+        m_goal_resolver.finish(m_resolver, m_proximity, boundary, safety_distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
     report.max_entry = resolved.max_depth_before;
     for (size_t k = 0; k < m_contacts.obstacle.size(); ++k) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include "collision/response/contact_projection.h"
+#include "collision/response/goal_projection.h"
 #include "gnn/physics/stepper/self_contact_projection.h"
 #include "gnn/physics/xpbd/distance_constraints.h"
+#include "gnn/physics/xpbd/goal_constraints.h"
 #include "gnn/physics/xpbd/moving_planes.h"
 #include "gnn/physics/xpbd/self_contact_planes.h"
 #include "gnn/stepper.h"
@@ -33,8 +35,9 @@ struct XpbdSettings {
 ///     XpbdStepper stepper(garment, settings);
 ///     StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
 ///
-/// Obstacles are queried once per step and move along as planes; pins move linearly; a contact
-/// projection leaves nothing inside an obstacle. Accepts any time step.
+/// Obstacles are queried once per step and move along as planes; pins and goals move linearly;
+/// projections leave nothing inside an obstacle and nothing beyond the limits of goals. Accepts any
+/// time step.
 ///
 /// ClothState has the mean velocity over a step, which lags behind the velocity at its end, from
 /// which substeps go on. A state whose positions are those this stepper returned last goes on with
@@ -64,6 +67,7 @@ class XpbdStepper : public Stepper {
     void resolve(const Boundary& boundary, double dt, StepReport& report);
     void finish_self_contact(const Boundary& boundary, double dt, const ClothState& state,
                              StepReport& report);
+    void finish_goals(double dt, const ClothState& state, StepReport& report);
     bool finish(double dt, ClothState& state);
 
     const Garment* m_garment;
@@ -72,8 +76,10 @@ class XpbdStepper : public Stepper {
     double m_prepared_dt = 0.0;  ///< time step of the constraints (s)
     Proximity m_proximity;
     ContactProjection m_resolver;
+    GoalProjection m_goal_resolver;
     SurfaceContacts m_contacts;
     MovingPlanes m_planes;
+    GoalConstraints m_goals;
     SelfContactPlanes m_self_planes;
     SelfContactProjection m_self_contact;
     PaddedPoints m_p, m_w, m_before;  ///< of the substep: positions, velocities, start

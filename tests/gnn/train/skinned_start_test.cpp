@@ -34,29 +34,6 @@ class SkinnedStart : public testing::Test {
 AnimatedBody* SkinnedStart::s_body = nullptr;
 Garment* SkinnedStart::s_garment = nullptr;
 
-TEST_F(SkinnedStart, RestPoseIsTheGarmentAtRest) {
-    const Points& rest = s_garment->rest().vertices;
-    const SkinWeights weights = weights_from_skin(rest, s_body->body());
-    ASSERT_EQ(weights.vertex_count(), rest.rows());
-    EXPECT_LT((pose_garment(rest, weights, *s_body, 0.0) - rest).cwiseAbs().maxCoeff(), 1e-9);
-}
-
-TEST_F(SkinnedStart, FollowsTheBody) {
-    const double time = 4.0;
-    const SkinWeights weights = weights_from_skin(s_garment->rest().vertices, s_body->body());
-    const Points posed = pose_garment(s_garment->rest().vertices, weights, *s_body, time);
-    const auto to_skin = [&](const Points& x, const Points& skin) {
-        VectorX distance(x.rows());
-        for (Eigen::Index i = 0; i < x.rows(); ++i)
-            distance[i] = (skin.rowwise() - x.row(i)).rowwise().norm().minCoeff();
-        return distance.mean();
-    };
-    const double at_rest = to_skin(s_garment->rest().vertices, s_body->body().rest());
-    EXPECT_GT((posed - s_garment->rest().vertices).rowwise().norm().mean(), 0.1) << "it has moved";
-    EXPECT_LT(to_skin(posed, s_body->vertices(time)), 1.3 * at_rest);
-    EXPECT_LT(measure_stretch(*s_garment, posed).p50, 1.1);
-}
-
 TEST_F(SkinnedStart, StandsOutsideOfTheBodyWithItsNoise) {
     SkinnedStartSettings settings;
     settings.at_rest = 1.0;
