@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "data/core/check_range.h"
@@ -35,7 +36,8 @@ void on_signal(int signal) {
 struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "kicks", loss;
-    int width = 32, steps = 8, nice = 0;
+    int width = 32, levels = 2, nice = 0;
+    std::optional<int> steps;
     bool force_features = true, resume = false;
     std::map<std::string, double> recipe_values;  ///< of recipe_options
 };
@@ -91,9 +93,13 @@ Options parse(int count, char** arguments) {
                             const char* description, const char* group = "Options") {
         return app.add_option(name, value, description)->type_name(type)->group(group);
     };
-    add("--variant", options.variant, "NAME", "baseline, sampling, reduction or fast (fast)");
+    add("--variant", options.variant, "NAME",
+        "baseline, sampling, reduction or fast; with coarse levels hood, hood_fast or bistride "
+        "(fast)");
     add("--width", options.width, "D", "latent size, a multiple of 16 trains fastest (32)");
-    add("--steps", options.steps, "L", "message passing steps (8)");
+    add("--steps", options.steps, "L", "message passing steps (8, with coarse levels 15)");
+    add("--levels", options.levels, "K",
+        "coarse levels of hood, hood_fast and bistride, 1 to 6; takes 2 K + 1 steps or more (2)");
     add("--force-features", options.force_features, "0|1",
         "forces at x_t and at the guess as input (1)");
     add("--recipe", options.recipe, "NAME",
@@ -157,11 +163,19 @@ Options parse(int count, char** arguments) {
     return options;
 }
 
+cloth::ModelConfig model_config(const Options& options) {
+    using cloth::ModelConfig;
+    const bool is_flat =
+        ModelConfig::variant_named(options.variant).pooling == cloth::Pooling::none;
+    const int steps = options.steps.value_or(is_flat ? 8 : 15);
+    cloth::check_range("--steps", steps, 1, 64);
+    return ModelConfig::variant_named(options.variant, steps, options.levels);
+}
+
 cloth::TrainerSettings make_settings(const Options& options) {
     cloth::TrainerSettings settings = options.settings;
-    settings.model = cloth::ModelConfig::variant_named(options.variant);
+    settings.model = model_config(options);
     settings.model.width = options.width;
-    settings.model.steps = options.steps;
     settings.model.features.force_features = options.force_features;
     settings.model = cloth::ModelConfig::from_json(settings.model.to_json(), "command line");
     settings.recipe = cloth::Recipe::named(options.recipe, options.width);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
+#include <utility>
 
 #include "data/core/check_range.h"
 
@@ -62,20 +63,78 @@ class Deck {
     int m_next = 0;
 };
 
-void add_directed_edges(const Garment& garment, ClothGraph& graph) {
-    std::vector<std::vector<int>> neighbours(static_cast<size_t>(graph.vertex_count));
+Adjacency mesh_adjacency(const Garment& garment) {
+    Adjacency neighbours(static_cast<size_t>(garment.vertex_count()));
     for (const auto& [a, b] : garment.edges()) {
         neighbours[static_cast<size_t>(a)].push_back(b);
         neighbours[static_cast<size_t>(b)].push_back(a);
     }
-    graph.first_edge.assign(1, 0);
-    for (int i = 0; i < graph.vertex_count; ++i) {
-        auto& senders = neighbours[static_cast<size_t>(i)];
-        std::sort(senders.begin(), senders.end());
+    for (std::vector<int>& list : neighbours) std::sort(list.begin(), list.end());
+    return neighbours;
+}
+
+/// Appends the incoming edges of `nodes`. Returns where each node's begin, and the end.
+std::vector<int> append_edges(const Adjacency& neighbours, const std::vector<int>& nodes,
+                              ClothGraph& graph) {
+    std::vector<int> first_edge = {graph.edge_count()};
+    for (const int node : nodes) {
+        const std::vector<int>& senders = neighbours[static_cast<size_t>(node)];
         graph.senders.insert(graph.senders.end(), senders.begin(), senders.end());
-        graph.receivers.insert(graph.receivers.end(), senders.size(), i);
-        graph.first_edge.push_back(graph.edge_count());
+        graph.receivers.insert(graph.receivers.end(), senders.size(), node);
+        first_edge.push_back(graph.edge_count());
     }
+    return first_edge;
+}
+
+bool uses(const std::vector<int>& levels, int level) {
+    return std::find(levels.begin(), levels.end(), level) != levels.end();
+}
+
+/// The schedule of a level, dealt over the steps that use it alone.
+SamplingSchedule deal_level(const std::vector<int>& first_edge, const GraphSettings& settings,
+                            int level) {
+    const LevelSchedule& levels = settings.level_schedule;
+    if (levels.empty())
+        return make_schedule(first_edge, settings.steps, settings.sampled_edges, settings.seed);
+    const auto uses_level = [&](const std::vector<int>& step) { return uses(step, level); };
+    const auto count = std::count_if(levels.begin(), levels.end(), uses_level);
+    const std::uint64_t seed = settings.seed + (static_cast<std::uint64_t>(level) << 32);
+    SamplingSchedule dealt =
+        make_schedule(first_edge, static_cast<int>(count), settings.sampled_edges, seed);
+    if (dealt.edges.empty()) return dealt;
+    SamplingSchedule result{dealt.fan_in, std::vector<std::vector<int>>(levels.size())};
+    size_t next = 0;
+    for (size_t k = 0; k < levels.size(); ++k)
+        if (uses_level(levels[k])) result.edges[k] = std::move(dealt.edges[next++]);
+    return result;
+}
+
+CoarseLevel append_level(const Adjacency& neighbours, const GraphSettings& settings, int level,
+                         ClothGraph& graph) {
+    CoarseLevel result;
+    const LevelSchedule& levels = settings.level_schedule;
+    if (std::any_of(levels.begin(), levels.end(),
+                    [&](const std::vector<int>& step) { return uses(step, level); }))
+        for (int node = 0; node < graph.vertex_count; ++node)
+            if (!neighbours[static_cast<size_t>(node)].empty()) result.nodes.push_back(node);
+    result.first_edge = append_edges(neighbours, result.nodes, graph);
+    result.schedule = deal_level(result.first_edge, settings, level);
+    return result;
+}
+
+/// Distances at rest. Far vertices may lie in the same place; then a coarse edge has a tenth of a
+/// mesh edge's length, because features are divided by it.
+VectorX rest_lengths(const Garment& garment, const ClothGraph& graph) {
+    VectorX lengths(graph.edge_count());
+    const Points& rest = garment.rest().vertices;
+    const double least = 0.1 * garment.mean_edge_length();
+    for (int e = 0; e < graph.edge_count(); ++e) {
+        const double length = (rest.row(graph.senders[static_cast<size_t>(e)]) -
+                               rest.row(graph.receivers[static_cast<size_t>(e)]))
+                                  .norm();
+        lengths[e] = e < graph.first_edge.back() ? length : std::max(length, least);
+    }
+    return lengths;
 }
 
 VectorX cotangent_diagonal(const TriMesh& rest) {
@@ -115,20 +174,22 @@ SamplingSchedule make_schedule(const std::vector<int>& first_edge, int steps, in
 ClothGraph build_cloth_graph(const Garment& garment, const GraphSettings& settings) {
     check_range("GraphSettings.steps", settings.steps, 1, 64);
     check_range("GraphSettings.sampled_edges", settings.sampled_edges, 0, 32);
+    check_levels("GraphSettings", settings.steps, settings.pooling, settings.level_schedule);
     static std::atomic<std::uint64_t> next_id{1};
     ClothGraph graph;
     graph.id = next_id++;
     graph.vertex_count = static_cast<int>(garment.vertex_count());
-    add_directed_edges(garment, graph);
-    graph.rest_length.resize(graph.edge_count());
-    const Points& rest = garment.rest().vertices;
-    for (int e = 0; e < graph.edge_count(); ++e)
-        graph.rest_length[e] = (rest.row(graph.senders[static_cast<size_t>(e)]) -
-                                rest.row(graph.receivers[static_cast<size_t>(e)]))
-                                   .norm();
+    const Adjacency mesh = mesh_adjacency(garment);
+    std::vector<int> all(mesh.size());
+    std::iota(all.begin(), all.end(), 0);
+    graph.first_edge = append_edges(mesh, all, graph);
+    graph.schedule = deal_level(graph.first_edge, settings, 0);
+    for (const Adjacency& level :
+         build_coarse_levels(mesh, settings.pooling, coarsest_level(settings.level_schedule)))
+        graph.coarse.push_back(
+            append_level(level, settings, static_cast<int>(graph.coarse.size()) + 1, graph));
+    graph.rest_length = rest_lengths(garment, graph);
     graph.laplacian_diagonal = cotangent_diagonal(garment.rest());
-    graph.schedule =
-        make_schedule(graph.first_edge, settings.steps, settings.sampled_edges, settings.seed);
     return graph;
 }
 

@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -16,6 +17,10 @@
 // of others are the senders' products B v, which are computed a step ahead into the other of two
 // buffers. So groups run in any order on any thread with one barrier per step, and each sum is
 // always taken in the same order.
+//
+// A step on coarse levels does the same with the group's vertices that are in the level: their
+// latents are gathered, and products have a row per node of the level. Latents and sums keep the
+// numbers of the vertices.
 
 namespace cloth {
 
@@ -82,13 +87,24 @@ class Engine::Pass {
 
  private:
     struct Group {
+        int number;
         int v0, vertices;  ///< first vertex and number
         int w0, active;    ///< first world edge and number
     };
+    /// A group's part of some ascending list of rows.
+    struct Part {
+        int first, count;
+        const int* rows;  ///< from the group's first on; null: first, first + 1, ...
+    };
 
     Group group_of(int group) const;
+    Part nodes_of(int level, const Group& group) const;
     float* row(AlignedBuffer& buffer, int index) const {
         return buffer.data() + static_cast<size_t>(index) * static_cast<size_t>(m_width);
+    }
+    /// Where row 0 would be if the group's first row `first` lies at the start of the buffer.
+    float* shifted(AlignedBuffer& buffer, int first) const {
+        return buffer.data() - static_cast<std::ptrdiff_t>(first) * m_width;
     }
     float* world_rows(const Group& group, EngineWorkspace::Scratch& mine) const {
         return m_config.world_every_step ? row(m_work.world, group.w0) : mine.world.data();
@@ -108,11 +124,15 @@ class Engine::Pass {
     void encode_rows(const EngineWeights::Encoder& encoder, const float* in, int count, float* to,
                      EngineWorkspace::Scratch& mine) const;
     void encode_world(const Group& group, EngineWorkspace::Scratch& mine) const;
-    void send_edges(int group, size_t k, EngineWorkspace::Scratch& mine) const;
-    void send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
-    void update_bodies(const Group& group, size_t k, bool keep,
+    const float* latents_of(const Part& nodes, EngineWorkspace::Scratch& mine) const;
+    void send_edges(const Group& group, size_t k, size_t slot,
+                    EngineWorkspace::Scratch& mine) const;
+    bool send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void update_bodies(const Group& group, size_t k, const MessageBlockRows& to_garment, bool keep,
                        EngineWorkspace::Scratch& mine) const;
-    void update_nodes(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
+    void update_nodes(const Group& group, size_t k, bool any_world,
+                      EngineWorkspace::Scratch& mine) const;
+    const std::vector<int>& levels(size_t k) const { return m_config.levels(static_cast<int>(k)); }
     void make_sender_products(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const;
 
     const EngineWeights& m_weights;
@@ -126,22 +146,49 @@ class Engine::Pass {
 };
 
 void Engine::Pass::find_active() {
-    m_work.active.clear();
+    for (EngineWorkspace::Active& level : m_work.active) {
+        level.vertices.clear();
+        level.rows.clear();
+    }
+    const auto begin_group = [this](size_t group) {
+        for (EngineWorkspace::Active& level : m_work.active)
+            level.first[group] = static_cast<int>(level.vertices.size());
+    };
     for (int i = 0; i < m_topology.vertices; ++i) {
         if (i % EngineTopology::group_size == 0)
-            m_work.first_active[static_cast<size_t>(i / EngineTopology::group_size)] =
-                static_cast<int>(m_work.active.size());
-        if (m_features.world_mask.size() > i && m_features.world_mask[i] != 0.0f)
-            m_work.active.push_back(i);
+            begin_group(static_cast<size_t>(i / EngineTopology::group_size));
+        if (m_features.world_mask.size() <= i || m_features.world_mask[i] == 0.0f) continue;
+        const int row = static_cast<int>(m_work.active[0].vertices.size());
+        m_work.active[0].vertices.push_back(i);
+        for (size_t level = 1; level < m_work.active.size(); ++level) {
+            if (m_topology.deepest_level[static_cast<size_t>(i)] < static_cast<int>(level)) break;
+            m_work.active[level].vertices.push_back(i);
+            m_work.active[level].rows.push_back(row);
+        }
     }
-    m_work.first_active.back() = static_cast<int>(m_work.active.size());
+    begin_group(static_cast<size_t>(m_topology.groups));
 }
 
 Engine::Pass::Group Engine::Pass::group_of(int group) const {
-    const int v0 = m_topology.first_vertex(group),
-              w0 = m_work.first_active[static_cast<size_t>(group)];
-    return {v0, m_topology.first_vertex(group + 1) - v0, w0,
-            m_work.first_active[static_cast<size_t>(group) + 1] - w0};
+    const std::vector<int>& first_active = m_work.active[0].first;
+    const int v0 = m_topology.first_vertex(group), w0 = first_active[static_cast<size_t>(group)];
+    return {group, v0, m_topology.first_vertex(group + 1) - v0, w0,
+            first_active[static_cast<size_t>(group) + 1] - w0};
+}
+
+Engine::Pass::Part Engine::Pass::nodes_of(int level, const Group& group) const {
+    const LevelNodes& nodes = m_topology.levels[static_cast<size_t>(level)];
+    const int first = nodes.first_node[static_cast<size_t>(group.number)];
+    return {first, nodes.first_node[static_cast<size_t>(group.number) + 1] - first,
+            level == 0 ? nullptr : nodes.vertices.data() + first};
+}
+
+/// One after the other.
+const float* Engine::Pass::latents_of(const Part& nodes, EngineWorkspace::Scratch& mine) const {
+    if (!nodes.rows) return row(m_work.nodes, nodes.first);
+    for (int r = 0; r < nodes.count; ++r)
+        std::copy_n(row(m_work.nodes, nodes.rows[r]), m_width, row(mine.gathered, r));
+    return mine.gathered.data();
 }
 
 void Engine::Pass::encode_rows(const EngineWeights::Encoder& encoder, const float* in, int count,
@@ -159,18 +206,22 @@ void Engine::Pass::encode(int group, EngineWorkspace::Scratch& mine) const {
                 read_rows(m_features.node, m_weights.node_encoder(), nullptr, g.v0,
                           g.v0 + g.vertices, mine.in),
                 g.vertices, row(m_work.nodes, g.v0), mine);
-    const int e0 = m_topology.first_edge[static_cast<size_t>(group)];
-    const int e1 = m_topology.first_edge[static_cast<size_t>(group) + 1];
-    encode_rows(m_weights.edge_encoder(),
-                read_rows(m_features.edge, m_weights.edge_encoder(), nullptr, e0, e1, mine.in),
-                e1 - e0, row(m_work.edges, e0), mine);
+    for (size_t level = 0; level < m_topology.levels.size(); ++level) {
+        const std::vector<int>& first_edge = m_topology.levels[level].first_edge;
+        const int e0 = first_edge[static_cast<size_t>(group)];
+        const int e1 = first_edge[static_cast<size_t>(group) + 1];
+        const EngineWeights::Encoder& encoder = m_weights.edge_encoder(static_cast<int>(level));
+        if (encoder.block.width == 0) continue;  // no step uses the level
+        encode_rows(encoder, read_rows(m_features.edge, encoder, nullptr, e0, e1, mine.in), e1 - e0,
+                    row(m_work.edges, e0), mine);
+    }
     if (m_config.world_every_step) encode_world(g, mine);
     make_sender_products(g, 0, mine);
 }
 
 void Engine::Pass::encode_world(const Group& group, EngineWorkspace::Scratch& mine) const {
     const int first = group.w0, last = group.w0 + group.active;
-    const int* list = m_work.active.data();
+    const int* list = m_work.active[0].vertices.data();
     encode_rows(m_weights.body_encoder(),
                 read_rows(m_features.body, m_weights.body_encoder(), list, first, last, mine.in),
                 group.active, body_rows(group, mine), mine);
@@ -185,91 +236,116 @@ void Engine::Pass::encode_world(const Group& group, EngineWorkspace::Scratch& mi
 
 void Engine::Pass::make_sender_products(const Group& group, size_t k,
                                         EngineWorkspace::Scratch& mine) const {
-    layer(group.vertices, row(m_work.nodes, group.v0), m_weights.step(k).sender, nullptr, false,
-          row(m_work.sender[k % 2], group.v0), mine);
+    for (size_t slot = 0; slot < levels(k).size(); ++slot) {
+        const Part nodes = nodes_of(levels(k)[slot], group);
+        layer(nodes.count, latents_of(nodes, mine), m_weights.step(k).edges[slot].sender, nullptr,
+              false, row(m_work.sender[k % 2][slot], nodes.first), mine);
+    }
 }
 
-void Engine::Pass::send_edges(int group, size_t k, EngineWorkspace::Scratch& mine) const {
-    const Group g = group_of(group);
-    const EdgeTable& table = m_topology.table(k);
-    const int first = table.first_row[static_cast<size_t>(group)];
-    layer(g.vertices, row(m_work.nodes, g.v0), m_weights.step(k).receiver, nullptr, false,
+void Engine::Pass::send_edges(const Group& group, size_t k, size_t slot,
+                              EngineWorkspace::Scratch& mine) const {
+    const int level = levels(k)[slot];
+    const Part nodes = nodes_of(level, group);
+    const EdgeTable& table = m_topology.table(k, slot);
+    const EngineWeights::Edges& weights = m_weights.step(k).edges[slot];
+    const int first = table.first_row[static_cast<size_t>(group.number)];
+    layer(nodes.count, latents_of(nodes, mine), weights.receiver, nullptr, false,
           mine.receiver.data(), mine);
-    std::fill(mine.mesh_sum.begin(), mine.mesh_sum.end(), 0.0f);
-    // the group's rows of these two lie in scratch: counted from its first vertex
-    const std::ptrdiff_t offset = static_cast<std::ptrdiff_t>(g.v0) * m_width;
+    AlignedBuffer& sum = mine.mesh_sum[slot];
+    std::fill(sum.begin(), sum.end(), 0.0f);
     MessageBlockRows rows;
-    rows.rows = table.first_row[static_cast<size_t>(group) + 1] - first;
-    rows.x[0] = table.edges.empty() ? row(m_work.edges, first) : m_work.edges.data();
-    rows.x_index[0] = table.edges.empty() ? nullptr : table.edges.data() + first;
+    rows.rows = table.first_row[static_cast<size_t>(group.number) + 1] - first;
+    const bool listed = !table.edges.empty();
+    rows.x[0] = listed ? m_work.edges.data() : row(m_work.edges, table.first_edge + first);
+    rows.x_index[0] = listed ? table.edges.data() + first : nullptr;
     rows.products = 2;
-    rows.p[0] = mine.receiver.data() - offset;
-    rows.p_index[0] = rows.sum_index = table.receivers.data() + first;
-    rows.p[1] = m_work.sender[k % 2].data();
+    rows.p[0] = shifted(mine.receiver, nodes.first);
+    rows.sum_index = table.receivers.data() + first;
+    rows.p_index[0] =
+        table.receiver_rows.empty() ? rows.sum_index : table.receiver_rows.data() + first;
+    rows.p[1] = m_work.sender[k % 2][slot].data();
     rows.p_index[1] = table.senders.data() + first;
     rows.sum_scale = static_cast<float>(m_config.message_scale);
-    const bool last = static_cast<int>(k) + 1 == m_config.steps;
-    run(m_weights.step(k).edge, rows, last ? nullptr : const_cast<float*>(rows.x[0]),
-        mine.mesh_sum.data() - offset, mine);
+    run(weights.block, rows,
+        m_config.uses_after(level, static_cast<int>(k)) ? const_cast<float*>(rows.x[0]) : nullptr,
+        shifted(sum, group.v0), mine);
 }
 
-void Engine::Pass::send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const {
+/// Returns whether there was anything to send.
+bool Engine::Pass::send_world(const Group& group, size_t k, EngineWorkspace::Scratch& mine) const {
+    if (!m_config.has_world(static_cast<int>(k))) return false;
+    const EngineWorkspace::Active& active = m_work.active[static_cast<size_t>(levels(k).front())];
+    const int first = active.first[static_cast<size_t>(group.number)];
+    MessageBlockRows rows;
+    rows.rows = active.first[static_cast<size_t>(group.number) + 1] - first;
+    if (rows.rows == 0) return false;
+    if (!m_config.world_every_step) encode_world(group, mine);
     const bool keep = m_config.world_every_step && static_cast<int>(k) + 1 < m_config.steps;
     std::fill(mine.world_sum.begin(), mine.world_sum.end(), 0.0f);
-    float* world = world_rows(group, mine);
-    MessageBlockRows rows;
-    rows.rows = group.active;
+    float *world = world_rows(group, mine), *bodies = body_rows(group, mine);
+    if (!active.rows.empty()) {  // the list counts from the first of all groups
+        world -= static_cast<std::ptrdiff_t>(group.w0) * m_width;
+        bodies -= static_cast<std::ptrdiff_t>(group.w0) * m_width;
+        rows.x_index[0] = rows.x_index[2] = active.rows.data() + first;
+    }
     rows.x[0] = world;
     rows.x[1] = m_work.nodes.data();
-    rows.x_index[1] = m_work.active.data() + group.w0;
-    rows.x[2] = body_rows(group, mine);
-    rows.sum_index = m_work.active.data() + group.w0;
-    run(m_weights.step(k).world, rows, keep ? world : nullptr,
-        mine.world_sum.data() - static_cast<std::ptrdiff_t>(group.v0) * m_width, mine);
+    rows.x_index[1] = rows.sum_index = active.vertices.data() + first;
+    rows.x[2] = bodies;
+    run(m_weights.step(k).world, rows, keep ? world : nullptr, shifted(mine.world_sum, group.v0),
+        mine);
     if (m_config.body_updates && static_cast<int>(k) + 1 < m_config.steps)
-        update_bodies(group, k, keep, mine);
+        update_bodies(group, k, rows, keep, mine);
+    return true;
 }
 
 /// Body nodes share the garment's node network; they have no mesh edges.
-void Engine::Pass::update_bodies(const Group& group, size_t k, bool keep,
-                                 EngineWorkspace::Scratch& mine) const {
+void Engine::Pass::update_bodies(const Group& group, size_t k, const MessageBlockRows& to_garment,
+                                 bool keep, EngineWorkspace::Scratch& mine) const {
     std::fill(mine.body_sum.begin(), mine.body_sum.end(), 0.0f);
-    float* bodies = body_rows(group, mine);
-    float* reverse = row(m_work.reverse, group.w0);
+    const int* list = to_garment.x_index[0];
+    float* bodies = const_cast<float*>(to_garment.x[2]);
+    float* reverse = list ? m_work.reverse.data() : row(m_work.reverse, group.w0);
     MessageBlockRows back;
-    back.rows = group.active;
+    back.rows = to_garment.rows;
     back.x[0] = reverse;
     back.x[1] = bodies;
+    back.x_index[0] = back.x_index[1] = list;
     back.x[2] = m_work.nodes.data();
-    back.x_index[2] = m_work.active.data() + group.w0;
+    back.x_index[2] = to_garment.x_index[1];
     run(m_weights.step(k).world, back, keep ? reverse : nullptr, mine.body_sum.data(), mine);
     MessageBlockRows update;
-    update.rows = group.active;
+    update.rows = back.rows;
     update.x[0] = bodies;
-    update.x[2] = mine.body_sum.data();
+    update.x_index[0] = list;
+    update.x[1 + levels(k).size()] = mine.body_sum.data();
     run(m_weights.step(k).node, update, bodies, nullptr, mine);
 }
 
-void Engine::Pass::update_nodes(const Group& group, size_t k,
+void Engine::Pass::update_nodes(const Group& group, size_t k, bool any_world,
                                 EngineWorkspace::Scratch& mine) const {
+    const Part nodes = nodes_of(levels(k).front(), group);
+    const auto first_row = [&](AlignedBuffer& sums) {
+        return nodes.rows ? shifted(sums, group.v0) : sums.data();
+    };
+    float* latents = nodes.rows ? m_work.nodes.data() : row(m_work.nodes, group.v0);
     MessageBlockRows rows;
-    rows.rows = group.vertices;
-    rows.x[0] = row(m_work.nodes, group.v0);
-    rows.x[1] = mine.mesh_sum.data();
-    if (group.active > 0 && m_config.has_world(static_cast<int>(k)))
-        rows.x[2] = mine.world_sum.data();
-    run(m_weights.step(k).node, rows, row(m_work.nodes, group.v0), nullptr, mine);
+    rows.rows = nodes.count;
+    rows.x[0] = latents;
+    size_t input = 1;
+    for (size_t slot = 0; slot < levels(k).size(); ++slot)
+        rows.x[input++] = first_row(mine.mesh_sum[slot]);
+    if (any_world) rows.x[input] = first_row(mine.world_sum);
+    std::fill(std::begin(rows.x_index), std::end(rows.x_index), nodes.rows);
+    run(m_weights.step(k).node, rows, latents, nullptr, mine);
 }
 
 void Engine::Pass::step(int group, size_t k, EngineWorkspace::Scratch& mine) const {
     const Group g = group_of(group);
-    const bool has_world = m_config.has_world(static_cast<int>(k));
-    send_edges(group, k, mine);
-    if (has_world && g.active > 0) {
-        if (!m_config.world_every_step) encode_world(g, mine);
-        send_world(g, k, mine);
-    }
-    update_nodes(g, k, mine);
+    for (size_t slot = 0; slot < levels(k).size(); ++slot) send_edges(g, k, slot, mine);
+    const bool any_world = send_world(g, k, mine);
+    update_nodes(g, k, any_world, mine);
     if (static_cast<int>(k) + 1 < m_config.steps) make_sender_products(g, k + 1, mine);
 }
 
@@ -310,13 +386,14 @@ const ModelConfig& Engine::config() const {
 void Engine::prepare(const ClothGraph& graph) {
     if (m_topology && m_topology->graph_id == graph.id) return;
     const int threads = m_settings.threads > 0 ? m_settings.threads : omp_get_max_threads();
-    m_topology = std::make_unique<Topology>(graph, config().sampled_edges != 0);
+    m_topology = std::make_unique<Topology>(graph, config());
     m_workspace = std::make_unique<Workspace>(*m_weights, *m_topology, threads);
 }
 
 void Engine::predict(const ClothGraph& graph, const Features& features, Points& out) {
     out.resize(graph.vertex_count, 3);
-    if (features.node.rows() != graph.vertex_count || features.edge.rows() != graph.edge_count()) {
+    if (features.node.rows() != graph.vertex_count || features.edge.rows() != graph.edge_count() ||
+        static_cast<int>(graph.coarse.size()) != coarsest_level(config().level_schedule)) {
         out.setConstant(std::numeric_limits<double>::quiet_NaN());
         return;
     }

@@ -1,6 +1,7 @@
 #include "gnn/model/engine_weights.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "data/core/errors.h"
@@ -62,7 +63,8 @@ class EngineWeights::Packer {
         w.w2 = m_weights.tensor(name + ".hidden.1.weight").data.data();
         w.w3 = m_weights.tensor(name + ".output.weight").data.data();
         w.panels = packed(block_panel_count(w), [&w](auto* to) { pack_block(w, to); });
-        w.w1[0] = w.w1[1] = w.w1[2] = w.w2 = w.w3 = nullptr;
+        std::fill(std::begin(w.w1), std::end(w.w1), nullptr);
+        w.w2 = w.w3 = nullptr;
         w.b1 = values(name + ".first.bias");
         w.b2 = values(name + ".hidden.1.bias");
         w.b3 = values(name + ".output.bias");
@@ -136,21 +138,28 @@ EngineWeights::EngineWeights(const Weights& weights, Precision precision)
                             "layers; run others with LibTorch");
     Packer packer(weights, precision);
     const auto walk = [&] {
-        const auto encoder = [&packer](const std::string& name) {
-            return Encoder{packer.block("encoder." + name, {"features"}), packer.statistics(name)};
+        const auto encoder = [&packer](const std::string& name, const std::string& statistics) {
+            return Encoder{packer.block("encoder." + name, {"features"}),
+                           packer.statistics(statistics)};
         };
-        m_node = encoder("node");
-        m_edge = encoder("edge");
-        m_world = encoder("world");
-        m_body = encoder("body");
+        m_node = encoder("node", "node");
+        m_edges.assign(static_cast<size_t>(coarsest_level(m_config.level_schedule)) + 1, {});
+        for (const int level : m_config.used_levels())
+            m_edges[static_cast<size_t>(level)] = encoder(level_name("edge", level), "edge");
+        m_world = encoder("world", "world");
+        m_body = encoder("body", "body");
         m_steps.clear();
         for (int k = 0; k < m_config.steps; ++k) {
             const std::string name = "step." + std::to_string(k);
             Step step{};
-            step.edge = packer.block(name + ".edge", {"edge"});
-            step.receiver = packer.panels(name + ".edge.first.receiver.weight");
-            step.sender = packer.panels(name + ".edge.first.sender.weight");
-            std::vector<std::string> inputs = {"node", "mesh"};
+            std::vector<std::string> inputs = {"node"};
+            for (const int level : m_config.levels(k)) {
+                const std::string edges = name + "." + level_name("edge", level);
+                step.edges.push_back({packer.block(edges, {"edge"}),
+                                      packer.panels(edges + ".first.receiver.weight"),
+                                      packer.panels(edges + ".first.sender.weight")});
+                inputs.push_back(level_name("mesh", level));
+            }
             if (m_config.has_world(k)) {
                 step.world = packer.block(name + ".world", {"edge", "receiver", "sender"});
                 inputs.push_back("world");

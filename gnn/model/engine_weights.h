@@ -32,9 +32,14 @@ class EngineWeights {
         MessageBlockWeights block;  ///< input filled up to a multiple of 16
         Statistics statistics;
     };
-    struct Step {
-        MessageBlockWeights edge, world, node;
+    /// Messages along the edges of a level.
+    struct Edges {
+        MessageBlockWeights block;
         Panels receiver, sender;  ///< of the split first layer's A and B
+    };
+    struct Step {
+        std::vector<Edges> edges;  ///< in the order of ModelConfig::levels(k)
+        MessageBlockWeights world, node;
     };
     struct Decoder {
         Panels first, hidden;
@@ -46,7 +51,8 @@ class EngineWeights {
     const std::string& name() const { return m_name; }  ///< Weights::solver_name()
     Precision precision() const { return m_precision; }
     const Encoder& node_encoder() const { return m_node; }
-    const Encoder& edge_encoder() const { return m_edge; }
+    /// @param level  one in use
+    const Encoder& edge_encoder(int level) const { return m_edges[static_cast<size_t>(level)]; }
     const Encoder& world_encoder() const { return m_world; }
     const Encoder& body_encoder() const { return m_body; }
     const Step& step(size_t k) const { return m_steps[k]; }
@@ -67,7 +73,8 @@ class EngineWeights {
     Precision m_precision;
     AlignedBuffer m_numbers;
     AlignedHalves m_rounded;  ///< panels in bfloat16
-    Encoder m_node, m_edge, m_world, m_body;
+    Encoder m_node, m_world, m_body;
+    std::vector<Encoder> m_edges;  ///< per level; blank for one that is not in use
     std::vector<Step> m_steps;
     Decoder m_decoder;
     std::vector<int> m_relative_columns;

@@ -15,21 +15,30 @@ namespace cloth {
 /// only within a step lies in the scratch of the thread that works on it.
 struct EngineWorkspace {
     struct Scratch {
-        MessageBlockScratch block;                            ///< of the kernels
-        AlignedBuffer in;                                     ///< normalised features of a group
-        AlignedBuffer mesh_sum, world_sum, receiver, hidden;  ///< (group x D)
-        AlignedBuffer world, bodies, body_sum;                ///< (group x D)
+        MessageBlockScratch block;                  ///< of the kernels
+        AlignedBuffer in;                           ///< normalised features of a group
+        AlignedBuffer mesh_sum[2];                  ///< (group x D) per slot of a step
+        AlignedBuffer gathered;                     ///< (group x D) nodes of a level
+        AlignedBuffer world_sum, receiver, hidden;  ///< (group x D)
+        AlignedBuffer world, bodies, body_sum;      ///< (group x D)
     };
 
     EngineWorkspace(const EngineWeights& weights, const EngineTopology& topology, int threads);
 
     size_t bytes() const;
 
+    /// World edges of a level's vertices.
+    struct Active {
+        std::vector<int> vertices;  ///< ascending
+        std::vector<int> rows;      ///< which of level 0's they are; empty on level 0
+        std::vector<int> first;     ///< per group, and one past the last
+    };
+
     size_t width;
-    AlignedBuffer nodes, edges, sender[2];  ///< sender: of even and of odd steps
+    AlignedBuffer nodes, edges;
+    AlignedBuffer sender[2][2];            ///< of even and of odd steps, per slot of a step
     AlignedBuffer world, reverse, bodies;  ///< (|V| x D), only if world messages are sent each step
-    std::vector<int> active;               ///< vertices with a world edge, ascending
-    std::vector<int> first_active;         ///< per group, and one past the last
+    std::vector<Active> active;            ///< per level
     std::vector<Scratch> scratch;          ///< per thread
 };
 

@@ -30,9 +30,9 @@ struct Panels {
 /// Single-threaded; rows are processed in order, and a row's numbers do not depend on the rows
 /// beside it.
 struct MessageBlockWeights {
-    static constexpr int max_inputs = 3;
+    static constexpr int max_inputs = 4;
     int width = 0;                                  ///< D, a multiple of 16
-    int inputs = 0;                                 ///< number of direct inputs, 1 to 3
+    int inputs = 0;                                 ///< number of direct inputs, 1 to 4
     int in[max_inputs] = {};                        ///< their widths, multiples of 16
     const float* w1[max_inputs] = {};               ///< each (D x in[k])
     const float* b1 = nullptr;                      ///< (D)
@@ -49,7 +49,7 @@ struct MessageBlockWeights {
 struct MessageBlockRows {
     int rows = 0;
     const float* x[MessageBlockWeights::max_inputs] = {};      ///< each (* x in[k]); null: zeros
-                                                               ///< (x[1], x[2], forward only)
+                                                               ///< (all but x[0], forward only)
     const int* x_index[MessageBlockWeights::max_inputs] = {};  ///< (rows)
     int products = 0;                                          ///< 0 to 2
     const float* p[2] = {};                                    ///< each (* x D)

@@ -1,6 +1,8 @@
 #include "gnn/model/model_config.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
@@ -10,38 +12,66 @@ namespace cloth {
 using nlohmann::json;
 
 const std::vector<std::string>& ModelConfig::variant_names() {
-    static const std::vector<std::string> names = {"baseline", "sampling", "reduction", "fast"};
+    static const std::vector<std::string> names = {"baseline", "sampling",  "reduction", "fast",
+                                                   "hood",     "hood_fast", "bistride"};
     return names;
 }
 
-ModelConfig ModelConfig::variant_named(const std::string& name) {
+ModelConfig ModelConfig::variant_named(const std::string& name, int count, int levels) {
+    const auto& names = variant_names();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        throw ArgumentError("variant '" + name + "'", "is not a network variant",
+                            "use baseline, sampling, reduction, fast, hood, hood_fast or bistride");
     ModelConfig config;
     config.variant = name;
-    const bool sampling = name == "sampling" || name == "fast";
-    const bool reduction = name == "reduction" || name == "fast";
-    if (!sampling && !reduction && name != "baseline")
-        throw ArgumentError("variant '" + name + "'", "is not a network variant",
-                            "use baseline, sampling, reduction or fast");
+    const bool fast = name == "fast" || name == "hood_fast";
+    const bool sampling = fast || name == "sampling", reduction = fast || name == "reduction";
     config.sampled_edges = sampling ? 4 : 0;
     config.world_every_step = !reduction;
     config.body_updates = !reduction;
+    if (name == "hood" || name == "hood_fast") config.pooling = Pooling::hood;
+    if (name == "bistride") config.pooling = Pooling::bistride;
+    const bool is_flat = config.pooling == Pooling::none;
+    config.steps = count != 0 ? count : is_flat ? 21 : 15;
+    if (!is_flat) config.level_schedule = down_and_up(config.steps, levels);
     return config;
 }
 
+const std::vector<int>& ModelConfig::levels(int step) const {
+    static const std::vector<int> mesh = {0};
+    return level_schedule.empty() ? mesh : level_schedule[static_cast<size_t>(step)];
+}
+
+std::vector<int> ModelConfig::used_levels() const {
+    std::set<int> used;
+    for (int k = 0; k < steps; ++k) used.insert(levels(k).begin(), levels(k).end());
+    return {used.begin(), used.end()};
+}
+
+bool ModelConfig::uses_after(int level, int step) const {
+    for (int k = step + 1; k < steps; ++k)
+        if (levels(k).front() == level || levels(k).back() == level) return true;
+    return false;
+}
+
 std::string ModelConfig::to_json() const {
-    return json{{"variant", variant},
-                {"steps", steps},
-                {"width", width},
-                {"hidden_layers", hidden_layers},
-                {"sampled_edges", sampled_edges},
-                {"world_every_step", world_every_step},
-                {"body_updates", body_updates},
-                {"message_scale", message_scale},
-                {"schedule_seed", schedule_seed},
-                {"dt", dt},
-                {"force_features", features.force_features},
-                {"world_radius", features.world_radius}}
-        .dump();
+    json j{{"variant", variant},
+           {"steps", steps},
+           {"width", width},
+           {"hidden_layers", hidden_layers},
+           {"sampled_edges", sampled_edges},
+           {"world_every_step", world_every_step},
+           {"body_updates", body_updates},
+           {"message_scale", message_scale},
+           {"schedule_seed", schedule_seed},
+           {"dt", dt},
+           {"force_features", features.force_features},
+           {"world_radius", features.world_radius}};
+    if (pooling != Pooling::none) {  // files of networks without it are as they always were
+        j["pooling"] = pooling_name(pooling);
+        j["level_schedule"] = level_schedule;
+    }
+    return j.dump();
 }
 
 void ModelConfig::check() const {
@@ -52,6 +82,7 @@ void ModelConfig::check() const {
     check_range("ModelConfig.message_scale", message_scale, 1e-3, 10.0);
     check_range("ModelConfig.dt", dt, 1e-4, 1.0);
     check_range("ModelConfig.features.world_radius", features.world_radius, 1e-3, 1.0);
+    check_levels("ModelConfig", steps, pooling, level_schedule);
 }
 
 ModelConfig ModelConfig::from_json(const std::string& text, const std::string& file) {
@@ -70,11 +101,11 @@ ModelConfig ModelConfig::from_json(const std::string& text, const std::string& f
         j.at("dt").get_to(c.dt);
         j.at("force_features").get_to(c.features.force_features);
         j.at("world_radius").get_to(c.features.world_radius);
+        c.pooling = pooling_named(j.value("pooling", "none"));
+        if (c.pooling != Pooling::none) j.at("level_schedule").get_to(c.level_schedule);
+        c.check();
     } catch (const json::exception& error) {
         throw LoadError(file, "configuration", error.what(), "export the network again");
-    }
-    try {
-        c.check();
     } catch (const ArgumentError& error) {
         throw LoadError(file, "configuration", error.what(), "export the network again");
     }
@@ -87,12 +118,13 @@ bool operator==(const ModelConfig& a, const ModelConfig& b) {
 
 namespace {
 
+using Sizes = std::vector<std::pair<std::string, int>>;  ///< names of inputs, and their widths
+
 struct ShapeList {
     std::vector<TensorShape> shapes;
     int width, hidden_layers;
 
-    void add_mlp(const std::string& name, const std::vector<std::pair<std::string, int>>& inputs,
-                 int outputs, bool norm) {
+    void add_mlp(const std::string& name, const Sizes& inputs, int outputs, bool norm) {
         for (const auto& [input, size] : inputs)
             shapes.push_back({name + ".first." + input + ".weight", {width, size}});
         shapes.push_back({name + ".first.bias", {width}});
@@ -111,14 +143,26 @@ struct ShapeList {
     }
 };
 
-std::vector<std::pair<std::string, int>> encoder_sizes(const ModelConfig& config) {
+Sizes feature_sizes(const ModelConfig& config) {
     return {{"node", feature_count(node_layout(config.features.force_features))},
             {"edge", feature_count(edge_layout())},
             {"world", feature_count(world_layout())},
             {"body", feature_count(body_layout())}};
 }
 
+/// Edges of each level have an encoder of their own.
+Sizes encoder_sizes(const ModelConfig& config) {
+    Sizes sizes = feature_sizes(config);
+    for (const int level : config.used_levels())
+        if (level > 0) sizes.push_back({level_name("edge", level), feature_count(edge_layout())});
+    return sizes;
+}
+
 }  // namespace
+
+std::string level_name(const std::string& part, int level) {
+    return level == 0 ? part : part + std::to_string(level);
+}
 
 std::vector<TensorShape> parameter_shapes(const ModelConfig& config) {
     const int d = config.width;
@@ -127,10 +171,13 @@ std::vector<TensorShape> parameter_shapes(const ModelConfig& config) {
         list.add_mlp("encoder." + name, {{"features", size}}, d, true);
     for (int k = 0; k < config.steps; ++k) {
         const std::string step = "step." + std::to_string(k);
-        list.add_mlp(step + ".edge", {{"receiver", d}, {"sender", d}, {"edge", d}}, d, true);
-        if (config.has_world(k))
-            list.add_mlp(step + ".world", {{"receiver", d}, {"sender", d}, {"edge", d}}, d, true);
-        std::vector<std::pair<std::string, int>> inputs = {{"node", d}, {"mesh", d}};
+        const Sizes ends_and_edge = {{"receiver", d}, {"sender", d}, {"edge", d}};
+        Sizes inputs = {{"node", d}};
+        for (const int level : config.levels(k)) {
+            list.add_mlp(step + "." + level_name("edge", level), ends_and_edge, d, true);
+            inputs.push_back({level_name("mesh", level), d});
+        }
+        if (config.has_world(k)) list.add_mlp(step + ".world", ends_and_edge, d, true);
         if (config.has_world(k)) inputs.push_back({"world", d});
         list.add_mlp(step + ".node", inputs, d, true);
     }
@@ -140,7 +187,7 @@ std::vector<TensorShape> parameter_shapes(const ModelConfig& config) {
 
 std::vector<TensorShape> statistics_shapes(const ModelConfig& config) {
     std::vector<TensorShape> shapes;
-    for (const auto& [name, size] : encoder_sizes(config)) {
+    for (const auto& [name, size] : feature_sizes(config)) {
         shapes.push_back({"statistics." + name + ".mean", {size}});
         shapes.push_back({"statistics." + name + ".deviation", {size}});
     }

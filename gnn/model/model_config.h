@@ -9,14 +9,18 @@
 
 namespace cloth {
 
-/// What the network is. The four variants of the paper's ablation differ in three switches.
+/// What the network is. The four variants of the paper's ablation differ in three switches; those
+/// with coarse levels add how these are made, and which of them a step uses.
 ///
-/// | variant   | sampled_edges | world_every_step | body_updates |
-/// |-----------|---------------|------------------|--------------|
-/// | baseline  | 0 (all)       | yes              | yes          |
-/// | sampling  | 4             | yes              | yes          |
-/// | reduction | 0 (all)       | first step only  | no           |
-/// | fast      | 4             | first step only  | no           |
+/// | variant   | sampled_edges | world_every_step | body_updates | pooling  |
+/// |-----------|---------------|------------------|--------------|----------|
+/// | baseline  | 0 (all)       | yes              | yes          | none     |
+/// | sampling  | 4             | yes              | yes          | none     |
+/// | reduction | 0 (all)       | first step only  | no           | none     |
+/// | fast      | 4             | first step only  | no           | none     |
+/// | hood      | 0 (all)       | yes              | yes          | hood     |
+/// | hood_fast | 4             | first step only  | no           | hood     |
+/// | bistride  | 0 (all)       | yes              | yes          | bistride |
 ///
 /// The paper's reduction keeps one message from garment to body, in the last step. Only garment
 /// nodes are decoded, so that message never reaches the output: it is left out.
@@ -34,13 +38,28 @@ struct ModelConfig {
     std::uint64_t schedule_seed = 1;  ///< of the sampling schedule
     double dt = 1.0 / 30.0;           ///< time step that the network is trained for (s), 1e-4 to 1
     FeatureSettings features;
+    Pooling pooling = Pooling::none;  ///< how coarse levels are made, if there are any
+    LevelSchedule level_schedule;     ///< levels that a step uses; without pooling: empty
 
-    /// @throws ArgumentError if `name` is not one of variant_names()
-    static ModelConfig variant_named(const std::string& name);
+    /// @param count   of message passing steps; 0: the variant's own, 15 with coarse levels, else
+    /// 21
+    /// @param levels  coarse ones, if the variant has any
+    /// @throws ArgumentError if `name` is not one of variant_names(), or as down_and_up() does
+    static ModelConfig variant_named(const std::string& name, int count = 0, int levels = 2);
     static const std::vector<std::string>& variant_names();
 
     bool has_world(int step) const { return world_every_step || step == 0; }
-    GraphSettings graph_settings() const { return {steps, sampled_edges, schedule_seed}; }
+    GraphSettings graph_settings() const {
+        return {steps, sampled_edges, schedule_seed, pooling, level_schedule};
+    }
+
+    /// Levels that send messages in a step, finest first; 0 is the mesh. One or two. The step
+    /// updates the nodes of the first.
+    const std::vector<int>& levels(int step) const;
+    /// Levels in use, ascending: {0} without pooling.
+    std::vector<int> used_levels() const;
+    /// Whether a later step sends messages along the edges of `level`.
+    bool uses_after(int level, int step) const;
 
     /// @throws ArgumentError naming the field that is out of range
     void check() const;
@@ -55,6 +74,10 @@ bool operator==(const ModelConfig& a, const ModelConfig& b);
 
 /// Name and shape of one array of numbers of the network.
 using TensorShape = std::pair<std::string, std::vector<int>>;
+
+/// Parts of the network that belong to a level are named after it: "edge" and "mesh" of the mesh,
+/// "edge1" and "mesh1" of level 1.
+std::string level_name(const std::string& part, int level);
 
 /// Learned tensors in a fixed order. A multilayer perceptron NAME has NAME.first.INPUT.weight for
 /// each of its inputs (the first layer is split: the sum over the inputs of weight x input equals

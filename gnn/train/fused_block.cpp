@@ -11,7 +11,21 @@ using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
 // Order of the tensors in the operation's argument list.
-enum Slot { x0, x1, x2, p0, p1, w10, w11, w12, b1, w2, b2, w3, b3, gamma, beta, slot_count };
+enum Slot {
+    x0,  // x of MessageBlockRows
+    p0 = x0 + MessageBlockWeights::max_inputs,
+    p1,
+    w10,  // w1
+    b1 = w10 + MessageBlockWeights::max_inputs,
+    w2,
+    b2,
+    w3,
+    b3,
+    gamma,
+    beta,
+    slot_count
+};
+constexpr int max_inputs = MessageBlockWeights::max_inputs;
 
 /// Shape of one call: what is constant between its forward and its backward pass.
 struct Call : torch::CustomClassHolder {
@@ -39,7 +53,7 @@ const int* index_of(const std::vector<int>& index) {
 MessageBlockWeights block_weights(const variable_list& t) {
     MessageBlockWeights weights;
     weights.width = static_cast<int>(t[w2].size(0));
-    for (int k = 0; k < 3 && !is_absent(t[x0 + k]); ++k) {
+    for (int k = 0; k < max_inputs && !is_absent(t[x0 + k]); ++k) {
         weights.in[k] = static_cast<int>(t[x0 + k].size(1));
         weights.w1[k] = data_of(t[w10 + k]);
         weights.inputs = k + 1;
@@ -57,7 +71,7 @@ MessageBlockWeights block_weights(const variable_list& t) {
 MessageBlockRows block_rows(const variable_list& t, const FusedRows& tables) {
     MessageBlockRows rows;
     rows.rows = tables.rows;
-    for (int k = 0; k < 3; ++k) rows.x[k] = data_of(t[x0 + k]);
+    for (int k = 0; k < max_inputs; ++k) rows.x[k] = data_of(t[x0 + k]);
     rows.x_index[0] = index_of(tables.x_index);
     for (int k = 0; k < 2 && !is_absent(t[p0 + k]); ++k) {
         rows.p[k] = data_of(t[p0 + k]);
@@ -76,11 +90,12 @@ MessageBlockScratch& scratch() {
 
 struct FusedFunction : torch::autograd::Function<FusedFunction> {
     static variable_list forward(AutogradContext* context, Tensor t_x0, Tensor t_x1, Tensor t_x2,
-                                 Tensor t_p0, Tensor t_p1, Tensor t_w10, Tensor t_w11, Tensor t_w12,
-                                 Tensor t_b1, Tensor t_w2, Tensor t_b2, Tensor t_w3, Tensor t_b3,
-                                 Tensor t_gamma, Tensor t_beta, c10::intrusive_ptr<Call> call) {
-        variable_list tensors = {t_x0, t_x1, t_x2, t_p0, t_p1, t_w10,   t_w11, t_w12,
-                                 t_b1, t_w2, t_b2, t_w3, t_b3, t_gamma, t_beta};
+                                 Tensor t_x3, Tensor t_p0, Tensor t_p1, Tensor t_w10, Tensor t_w11,
+                                 Tensor t_w12, Tensor t_w13, Tensor t_b1, Tensor t_w2, Tensor t_b2,
+                                 Tensor t_w3, Tensor t_b3, Tensor t_gamma, Tensor t_beta,
+                                 c10::intrusive_ptr<Call> call) {
+        variable_list tensors = {t_x0,  t_x1, t_x2, t_x3, t_p0, t_p1, t_w10,   t_w11, t_w12,
+                                 t_w13, t_b1, t_w2, t_b2, t_w3, t_b3, t_gamma, t_beta};
         for (Tensor& tensor : tensors) tensor = tensor.contiguous();
         context->save_for_backward(tensors);
         context->saved_data["call"] = c10::IValue::make_capsule(call);
@@ -108,7 +123,7 @@ struct FusedFunction : torch::autograd::Function<FusedFunction> {
                 gradients[slot] = slot == x0 && d_out.defined() ? d_out.clone()
                                                                 : torch::zeros_like(tensors[slot]);
         MessageBlockGradients to;
-        for (int k = 0; k < 3; ++k) {
+        for (int k = 0; k < max_inputs; ++k) {
             to.x[k] = gradient_of(gradients[x0 + k]);
             to.w1[k] = gradient_of(gradients[w10 + k]);
         }
@@ -146,10 +161,11 @@ FusedOutput fused_message_block(const std::vector<Tensor>& x, const std::vector<
     auto call = c10::make_intrusive<Call>();
     call->rows = std::move(rows);
     call->with_out = with_out;
-    const variable_list result = FusedFunction::apply(
-        input(x, 0), input(x, 1), input(x, 2), input(products, 0), input(products, 1),
-        weights.w1[0], present(weights.w1[1]), present(weights.w1[2]), weights.b1, weights.w2,
-        weights.b2, weights.w3, weights.b3, weights.gamma, weights.beta, call);
+    const variable_list result =
+        FusedFunction::apply(input(x, 0), input(x, 1), input(x, 2), input(x, 3), input(products, 0),
+                             input(products, 1), weights.w1[0], present(weights.w1[1]),
+                             present(weights.w1[2]), present(weights.w1[3]), weights.b1, weights.w2,
+                             weights.b2, weights.w3, weights.b3, weights.gamma, weights.beta, call);
     return {with_out ? result[0] : Tensor(), result[1]};
 }
 

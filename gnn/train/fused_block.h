@@ -19,7 +19,7 @@ struct FusedRows {
 
 /// Parameters of a block; undefined tensors stand for absent inputs.
 struct FusedWeights {
-    torch::Tensor w1[3];  ///< each (D x in[k])
+    torch::Tensor w1[4];  ///< each (D x in[k])
     torch::Tensor b1, w2, b2, w3, b3, gamma, beta;
 };
 
@@ -32,7 +32,7 @@ struct FusedOutput {
 /// message_block as a differentiable LibTorch operation: float32, CPU, single-threaded, widths that
 /// are multiples of 16. Nothing but its inputs is stored for the backward pass.
 ///
-/// @param x         1 to 3 direct inputs (* x in[k]); x[0] is the residual's base if `with_out`
+/// @param x         1 to 4 direct inputs (* x in[k]); x[0] is the residual's base if `with_out`
 /// @param products  0 to 2 given products (* x D)
 /// @param with_out  false: `out` is not computed (undefined)
 FusedOutput fused_message_block(const std::vector<torch::Tensor>& x,

@@ -8,20 +8,21 @@ namespace cloth {
 
 using torch::Tensor;
 
-/// Message tables of one garment.
-struct Network::GraphTables {
-    std::vector<std::unique_ptr<MessageTable>> edge;  ///< one, or one per step if sampled
-    std::unique_ptr<MessageTable> node;
-};
-
 struct Network::Step {
-    MlpWeights edge, world, node;
+    std::vector<MlpWeights> edge;  ///< per level of the step
+    MlpWeights world, node;
 };
 
 /// Latents of the world edges and of the virtual body nodes; row r is garment vertex vertices[r].
 struct Network::World {
-    int count = 0;
+    std::vector<int> vertices;
     Tensor edges, reverse_edges, bodies;
+};
+
+/// Message tables of the world edges of one level's vertices.
+struct Network::WorldTables {
+    int count = 0;
+    Tensor nodes;  ///< GraphTables::Level::vertices
     std::unique_ptr<MessageTable> to_garment, to_body, body;
 };
 
@@ -59,15 +60,20 @@ MlpWeights Network::bind_mlp(const std::string& name,
 
 void Network::bind_parameters() {
     m_node_encoder = bind_mlp("encoder.node", {"features"});
-    m_edge_encoder = bind_mlp("encoder.edge", {"features"});
+    for (const int level : m_config.used_levels())
+        m_edge_encoders[level] = bind_mlp("encoder." + level_name("edge", level), {"features"});
     m_world_encoder = bind_mlp("encoder.world", {"features"});
     m_body_encoder = bind_mlp("encoder.body", {"features"});
     m_decoder = bind_mlp("decoder", {"node"});
     for (int k = 0; k < m_config.steps; ++k) {
         const std::string name = "step." + std::to_string(k);
         Step step;
-        step.edge = bind_mlp(name + ".edge", {"receiver", "sender", "edge"});
-        std::vector<std::string> inputs = {"node", "mesh"};
+        std::vector<std::string> inputs = {"node"};
+        for (const int level : m_config.levels(k)) {
+            step.edge.push_back(
+                bind_mlp(name + "." + level_name("edge", level), {"receiver", "sender", "edge"}));
+            inputs.push_back(level_name("mesh", level));
+        }
         if (m_config.has_world(k)) {
             step.world = bind_mlp(name + ".world", {"receiver", "sender", "edge"});
             inputs.push_back("world");
@@ -77,21 +83,6 @@ void Network::bind_parameters() {
     }
 }
 
-static FusedRows edge_rows(const ClothGraph& graph, const std::vector<int>& edges, double scale) {
-    FusedRows rows;
-    rows.sums = graph.vertex_count;
-    rows.sum_scale = static_cast<float>(scale);
-    for (int e : edges) {
-        if (e < 0) continue;
-        rows.x_index.push_back(e);
-        rows.product_index[0].push_back(graph.receivers[static_cast<size_t>(e)]);
-        rows.product_index[1].push_back(graph.senders[static_cast<size_t>(e)]);
-    }
-    rows.sum_index = rows.product_index[0];
-    rows.rows = static_cast<int>(rows.x_index.size());
-    return rows;
-}
-
 static FusedRows plain_rows(int count, int sums) {
     FusedRows rows;
     rows.rows = count;
@@ -99,32 +90,19 @@ static FusedRows plain_rows(int count, int sums) {
     return rows;
 }
 
-const Network::GraphTables& Network::tables_of(const ClothGraph& graph) {
+const GraphTables& Network::tables_of(const ClothGraph& graph) {
     std::unique_ptr<GraphTables>& tables = m_tables[graph.id];
     if (tables) return *tables;
     if (m_tables.size() > 256) {  // short-lived garments must not pile up
         m_tables.clear();
         return tables_of(graph);
     }
-    tables = std::make_unique<GraphTables>();
-    const double scale = m_config.message_scale;
-    if (m_config.sampled_edges == 0) {
-        FusedRows rows = plain_rows(graph.edge_count(), graph.vertex_count);
-        rows.product_index[0] = graph.receivers;
-        rows.product_index[1] = graph.senders;
-        rows.sum_index = graph.receivers;
-        rows.sum_scale = static_cast<float>(scale);
-        tables->edge.push_back(std::make_unique<MessageTable>(std::move(rows), m_device));
-    } else {
-        for (const auto& step : graph.schedule.edges)
-            tables->edge.push_back(
-                std::make_unique<MessageTable>(edge_rows(graph, step, scale), m_device));
-    }
-    tables->node = std::make_unique<MessageTable>(plain_rows(graph.vertex_count, 0), m_device);
+    tables = std::make_unique<GraphTables>(graph, m_config, m_device);
     return *tables;
 }
 
-Tensor Network::to_device(const MatrixF& features, const FeatureStatistics& statistics) const {
+Tensor Network::to_device(const Eigen::Ref<const MatrixF>& features,
+                          const FeatureStatistics& statistics) const {
     // Zero columns fill up to a multiple of 16, which the fused operation asks for.
     const Eigen::Index padded = (features.cols() + 15) / 16 * 16;
     Tensor rows = torch::zeros({features.rows(), padded}, torch::kFloat32);
@@ -155,32 +133,67 @@ static Tensor reversed(const Tensor& world) {
     return world * torch::tensor(signs).to(world.device());
 }
 
+std::vector<Tensor> Network::encode_edges(const GraphTables& tables,
+                                          const Features& features) const {
+    std::vector<Tensor> latents(tables.levels.size());
+    for (const auto& [number, encoder] : m_edge_encoders) {
+        const GraphTables::Level& level = tables.level(number);
+        if (level.edges > 0)
+            latents[static_cast<size_t>(number)] =
+                encode(encoder, to_device(features.edge.middleRows(level.first_edge, level.edges),
+                                          m_statistics.edge));
+    }
+    return latents;
+}
+
 Network::World Network::encode_world(const Features& features) const {
     World world;
-    std::vector<int> vertices;
     for (Eigen::Index i = 0; i < features.world_mask.size(); ++i)
-        if (features.world_mask[i] != 0.0f) vertices.push_back(static_cast<int>(i));
-    world.count = static_cast<int>(vertices.size());
-    if (world.count == 0) return world;
-    MatrixF edges(world.count, features.world.cols()), bodies(world.count, features.body.cols());
-    for (int r = 0; r < world.count; ++r) {
-        edges.row(r) = features.world.row(vertices[static_cast<size_t>(r)]);
-        bodies.row(r) = features.body.row(vertices[static_cast<size_t>(r)]);
+        if (features.world_mask[i] != 0.0f) world.vertices.push_back(static_cast<int>(i));
+    const auto count = static_cast<Eigen::Index>(world.vertices.size());
+    if (count == 0) return world;
+    MatrixF edges(count, features.world.cols()), bodies(count, features.body.cols());
+    for (Eigen::Index r = 0; r < count; ++r) {
+        edges.row(r) = features.world.row(world.vertices[static_cast<size_t>(r)]);
+        bodies.row(r) = features.body.row(world.vertices[static_cast<size_t>(r)]);
     }
     const Tensor edge_features = to_device(edges, m_statistics.world);
     world.edges = encode(m_world_encoder, edge_features);
     world.bodies = encode(m_body_encoder, to_device(bodies, m_statistics.body));
-    FusedRows rows = plain_rows(world.count, static_cast<int>(features.world_mask.size()));
-    rows.product_index[0] = vertices;
-    rows.sum_index = vertices;
-    world.to_garment = std::make_unique<MessageTable>(rows, m_device);
-    if (!m_config.body_updates) return world;
-    world.reverse_edges = encode(m_world_encoder, reversed(edge_features));
-    FusedRows back = plain_rows(world.count, world.count);
-    back.product_index[1] = vertices;
-    world.to_body = std::make_unique<MessageTable>(std::move(back), m_device);
-    world.body = std::make_unique<MessageTable>(plain_rows(world.count, 0), m_device);
+    if (m_config.body_updates)
+        world.reverse_edges = encode(m_world_encoder, reversed(edge_features));
     return world;
+}
+
+Network::WorldTables Network::world_tables(const GraphTables& tables, const World& world,
+                                           int level) const {
+    const GraphTables::Level& nodes = tables.level(level);
+    std::vector<int> vertices, rows;  // rows: none on level 0, which has all of them
+    for (size_t r = 0; r < world.vertices.size(); ++r) {
+        const int vertex = world.vertices[r];
+        if (level > 0 && nodes.node_of[static_cast<size_t>(vertex)] < 0) continue;
+        vertices.push_back(vertex);
+        if (level > 0) rows.push_back(static_cast<int>(r));
+    }
+    WorldTables result;
+    result.count = static_cast<int>(vertices.size());
+    result.nodes = nodes.vertices;
+    if (result.count == 0) return result;
+    const std::vector<int> receivers = nodes.rows_of(vertices);
+    FusedRows to_garment = plain_rows(result.count, nodes.nodes);
+    to_garment.x_index = rows;
+    to_garment.product_index[0] = receivers;
+    to_garment.sum_index = receivers;
+    result.to_garment = std::make_unique<MessageTable>(std::move(to_garment), m_device);
+    if (!m_config.body_updates) return result;
+    FusedRows to_body = plain_rows(result.count, result.count);
+    to_body.x_index = rows;
+    to_body.product_index[1] = receivers;
+    result.to_body = std::make_unique<MessageTable>(std::move(to_body), m_device);
+    FusedRows body = plain_rows(result.count, 0);
+    body.x_index = std::move(rows);
+    result.body = std::make_unique<MessageTable>(std::move(body), m_device);
+    return result;
 }
 
 static Tensor product(const Tensor& latents, const Tensor& weight) {
@@ -188,44 +201,76 @@ static Tensor product(const Tensor& latents, const Tensor& weight) {
 }
 
 Tensor Network::world_messages(const Step& step, const Tensor& nodes, World& world,
-                               bool last) const {
+                               const WorldTables& tables, bool last) const {
     const Tensor& receiver = step.world.first[0];
     const Tensor& sender = step.world.first[1];
     const bool keep = m_config.world_every_step && !last;
+    const Tensor of_level = rows_at(nodes, tables.nodes);
+    const Tensor bodies = rows_at(world.bodies, tables.to_garment->x_index);
     FusedOutput to_garment =
-        m_message_op({world.edges}, {2}, {product(nodes, receiver), product(world.bodies, sender)},
-                     step.world, *world.to_garment, keep);
+        m_message_op({world.edges}, {2}, {product(of_level, receiver), product(bodies, sender)},
+                     step.world, *tables.to_garment, keep);
     if (m_config.body_updates && !last) {
-        FusedOutput to_body = m_message_op(
-            {world.reverse_edges}, {2}, {product(world.bodies, receiver), product(nodes, sender)},
-            step.world, *world.to_body, keep);
+        FusedOutput to_body = m_message_op({world.reverse_edges}, {2},
+                                           {product(bodies, receiver), product(of_level, sender)},
+                                           step.world, *tables.to_body, keep);
         // Body nodes share the garment's node network; they have no mesh edges.
+        const int input = static_cast<int>(step.edge.size()) + 1;
         world.bodies =
-            m_message_op({world.bodies, to_body.sum}, {0, 2}, {}, step.node, *world.body, true).out;
+            m_message_op({world.bodies, to_body.sum}, {0, input}, {}, step.node, *tables.body, true)
+                .out;
         world.reverse_edges = to_body.out;
     }
     if (keep) world.edges = to_garment.out;
     return to_garment.sum;
 }
 
+FusedOutput Network::send_edges(const GraphTables& tables, int k, size_t slot, const Tensor& nodes,
+                                const Tensor& edges) const {
+    const MessageTable& table = tables.edge_table(k, slot);
+    if (table.rows->rows == 0)
+        return {edges, torch::zeros({table.rows->sums, nodes.size(1)}, nodes.options())};
+    const MlpWeights& weights = m_steps[static_cast<size_t>(k)].edge[slot];
+    const int level = m_config.levels(k)[slot];
+    const Tensor of_level = rows_at(nodes, tables.level(level).vertices);
+    return m_message_op({edges}, {2},
+                        {product(of_level, weights.first[0]), product(of_level, weights.first[1])},
+                        weights, table, m_config.uses_after(level, k));
+}
+
 Tensor Network::forward(const ClothGraph& graph, const Features& features) {
+    if (static_cast<int>(graph.coarse.size()) != coarsest_level(m_config.level_schedule))
+        throw ArgumentError("graph", "has other levels than the network",
+                            "build it with config().graph_settings()");
     const GraphTables& tables = tables_of(graph);
     Tensor nodes = encode(m_node_encoder, to_device(features.node, m_statistics.node));
-    Tensor edges = encode(m_edge_encoder, to_device(features.edge, m_statistics.edge));
+    std::vector<Tensor> edges = encode_edges(tables, features);
     World world = encode_world(features);
+    std::map<int, WorldTables> world_tables_of;
     for (int k = 0; k < m_config.steps; ++k) {
         const Step& step = m_steps[static_cast<size_t>(k)];
         const bool last = k + 1 == m_config.steps;
-        const MessageTable& table =
-            *tables.edge[tables.edge.size() == 1 ? 0 : static_cast<size_t>(k)];
-        FusedOutput mesh = m_message_op(
-            {edges}, {2}, {product(nodes, step.edge.first[0]), product(nodes, step.edge.first[1])},
-            step.edge, table, !last);
-        std::vector<Tensor> inputs = {nodes, mesh.sum};
-        if (m_config.has_world(k) && world.count > 0)
-            inputs.push_back(world_messages(step, nodes, world, last));
-        nodes = m_message_op(inputs, {0, 1, 2}, {}, step.node, *tables.node, true).out;
-        if (!last) edges = mesh.out;
+        const std::vector<int>& levels = m_config.levels(k);
+        const GraphTables::Level& finest = tables.level(levels.front());
+        if (finest.nodes == 0) continue;  // a garment too small for this level
+        std::vector<Tensor> inputs = {nodes};
+        std::vector<int> numbers = {0};
+        for (size_t slot = 0; slot < levels.size(); ++slot) {
+            Tensor& latents = edges[static_cast<size_t>(levels[slot])];
+            FusedOutput mesh = send_edges(tables, k, slot, nodes, latents);
+            inputs.push_back(mesh.sum);
+            numbers.push_back(static_cast<int>(numbers.size()));
+            if (mesh.out.defined()) latents = mesh.out;
+        }
+        if (m_config.has_world(k) && !world.vertices.empty()) {
+            auto [found, is_new] = world_tables_of.try_emplace(levels.front());
+            if (is_new) found->second = world_tables(tables, world, levels.front());
+            if (found->second.count > 0) {
+                inputs.push_back(world_messages(step, nodes, world, found->second, last));
+                numbers.push_back(static_cast<int>(numbers.size()));
+            }
+        }
+        nodes = m_message_op(inputs, numbers, {}, step.node, *finest.update, true).out;
     }
     return mlp(m_decoder, nodes);
 }

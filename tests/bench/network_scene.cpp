@@ -71,27 +71,52 @@ NetworkInput::NetworkInput(const TshirtMoment& moment, const ModelConfig& config
         .build(moment.state, moment.boundary, potential, base, features);
 }
 
+/// Rows of a level: its nodes, those of them near a body, and its edges.
+struct LevelRows {
+    double nodes, active, edges;
+};
+
+static LevelRows rows_of(int level, const ClothGraph& graph, const Features& features) {
+    if (level == 0)
+        return {double(graph.vertex_count), double(features.world_mask.sum()),
+                double(graph.first_edge.back())};
+    const CoarseLevel& coarse = graph.coarse[static_cast<size_t>(level) - 1];
+    double active = 0.0;
+    for (const int node : coarse.nodes) active += double(features.world_mask[node]);
+    return {double(coarse.nodes.size()), active,
+            double(coarse.first_edge.back() - coarse.first_edge.front())};
+}
+
 NetworkFlops network_flops(const ModelConfig& config, const ClothGraph& graph,
                            const Features& features) {
-    const double d = config.width, v = graph.vertex_count, e = graph.edge_count();
-    const double active = features.world_mask.sum(), steps = config.steps;
-    const double sampled = config.sampled_edges == 0 ? e : std::min(e, v * config.sampled_edges);
-    const double world_steps = config.world_every_step ? steps : 1.0;
+    const double d = config.width, active = rows_of(0, graph, features).active;
     const auto columns = [](const auto& matrix) { return static_cast<double>(matrix.cols()); };
     NetworkFlops flops;
-    flops.encoder = perceptron(v, columns(features.node), d, d) +
-                    perceptron(e, columns(features.edge), d, d) +
+    flops.encoder = perceptron(graph.vertex_count, columns(features.node), d, d) +
+                    perceptron(graph.edge_count(), columns(features.edge), d, d) +
                     perceptron(active, columns(features.world), d, d) +
                     perceptron(active, columns(features.body), d, d);
-    flops.edges = steps * perceptron(sampled, d, d, d);
-    flops.products = steps * 2.0 * v * 2.0 * d * d;
-    flops.world = world_steps * perceptron(active, 3.0 * d, d, d);
-    flops.nodes = steps * perceptron(v, 2.0 * d, d, d) + world_steps * 2.0 * v * d * d;
-    if (config.body_updates)  // the last step's never reach the output
-        flops.world += (steps - 1.0) *
-                           (perceptron(active, 3.0 * d, d, d) + perceptron(active, 2.0 * d, d, d)) +
-                       perceptron(active, columns(features.world), d, d);
-    flops.decoder = perceptron(v, d, d, 3.0);
+    if (config.body_updates) flops.world = perceptron(active, columns(features.world), d, d);
+    for (int k = 0; k < config.steps; ++k) {
+        for (const int level : config.levels(k)) {
+            const LevelRows rows = rows_of(level, graph, features);
+            const double sampled = config.sampled_edges == 0
+                                       ? rows.edges
+                                       : std::min(rows.edges, rows.nodes * config.sampled_edges);
+            flops.edges += perceptron(sampled, d, d, d);
+            flops.products += 2.0 * rows.nodes * 2.0 * d * d;
+        }
+        const LevelRows rows = rows_of(config.levels(k).front(), graph, features);
+        const double inputs = static_cast<double>(1 + config.levels(k).size());
+        flops.nodes += perceptron(rows.nodes, inputs * d, d, d);
+        if (!config.has_world(k)) continue;
+        flops.nodes += 2.0 * rows.nodes * d * d;
+        flops.world += perceptron(rows.active, 3.0 * d, d, d);
+        if (config.body_updates && k + 1 < config.steps)  // the last step's never reach the output
+            flops.world +=
+                perceptron(rows.active, 3.0 * d, d, d) + perceptron(rows.active, 2.0 * d, d, d);
+    }
+    flops.decoder = perceptron(graph.vertex_count, d, d, 3.0);
     return flops;
 }
 

@@ -127,8 +127,8 @@ std::string check_shape_target(const std::string& path) {
 }
 
 std::string weights_file(const std::string& variant) {
-    ModelConfig config = ModelConfig::variant_named(variant);
-    config.steps = 1;
+    const int steps = variant == "fast" ? 1 : 3;
+    ModelConfig config = ModelConfig::variant_named(variant, steps, /*levels=*/1);
     config.width = 4;
     config.hidden_layers = 1;
     const auto path = std::filesystem::temp_directory_path() / ("fuzz_sample_" + variant);
@@ -200,6 +200,7 @@ TEST(LoadersFuzz, Mdd) {
 
 TEST(LoadersFuzz, Weights) {
     fuzz_files({"safetensors", weights_file("fast"), check_weights});
+    fuzz_files({"safetensors", weights_file("hood_fast"), check_weights});
 }
 
 TEST(LoadersFuzz, RigRecipe) {

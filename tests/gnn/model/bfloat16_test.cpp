@@ -282,7 +282,8 @@ TEST_P(Bfloat16Network, WeightsTakeHalfTheMemory) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, Bfloat16Network,
-                         ::testing::Values("baseline", "sampling", "reduction", "fast"));
+                         ::testing::Values("baseline", "sampling", "reduction", "fast", "hood",
+                                           "hood_fast", "bistride"));
 
 }  // namespace
 }  // namespace cloth::bfloat16_test

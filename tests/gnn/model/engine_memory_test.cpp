@@ -96,7 +96,8 @@ TEST_P(EngineMemoryOf, WeightsAreSharedAndCountedOnce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, EngineMemoryOf,
-                         ::testing::Values("baseline", "sampling", "reduction", "fast"));
+                         ::testing::Values("baseline", "sampling", "reduction", "fast", "hood",
+                                           "hood_fast", "bistride"));
 
 TEST(EngineMemory, FastAtFullSizeNeedsLessThan48MB) {
     const ModelConfig config = config_of("fast", 128);

@@ -16,10 +16,15 @@ namespace {
 using namespace test;
 
 const std::vector<Shape> shapes = {
-    {16, {16}, 2, false, 100},        {32, {32}, 2, true, 131},
-    {32, {32, 32, 32}, 0, false, 97}, {48, {48, 48}, 0, true, 5},
-    {64, {32}, 0, false, 1},          {80, {80, 16, 80}, 1, true, 50},
-    {96, {96}, 2, false, 49},         {128, {128, 128, 128}, 0, true, 77},
+    {16, {16}, 2, false, 100},
+    {32, {32}, 2, true, 131},
+    {32, {32, 32, 32}, 0, false, 97},
+    {48, {48, 48}, 0, true, 5},
+    {64, {32}, 0, false, 1},
+    {80, {80, 16, 80}, 1, true, 50},
+    {96, {96}, 2, false, 49},
+    {128, {128, 128, 128}, 0, true, 77},
+    {32, {32, 32, 32, 32}, 0, true, 61},
 };
 
 TEST_P(EveryInstructionSet, EqualsThePlainLoops) {

@@ -158,6 +158,52 @@ TEST(ModelConfig, VariantsAreThoseOfThePaper) {
     EXPECT_THROW(ModelConfig::variant_named("faster"), ArgumentError);
 }
 
+TEST(ModelConfig, VariantsWithCoarseLevelsDifferInSamplingReductionAndPooling) {
+    const ModelConfig hood = ModelConfig::variant_named("hood");
+    EXPECT_EQ(hood.steps, 15);
+    EXPECT_EQ(hood.level_schedule, down_and_up(15, 2));
+    EXPECT_EQ(hood.used_levels(), (std::vector<int>{0, 1, 2}));
+    EXPECT_TRUE(hood.uses_after(2, 10));
+    EXPECT_FALSE(hood.uses_after(2, 11));
+    EXPECT_FALSE(hood.uses_after(0, 14));
+    const ModelConfig fast = ModelConfig::variant_named("hood_fast", 8, 3);
+    EXPECT_EQ(fast.sampled_edges, 4);
+    EXPECT_FALSE(fast.world_every_step);
+    EXPECT_EQ(coarsest_level(fast.level_schedule), 3);
+    EXPECT_EQ(ModelConfig::variant_named("bistride").pooling, Pooling::bistride);
+    EXPECT_EQ(ModelConfig::variant_named("fast", 6).steps, 6);
+    EXPECT_EQ(ModelConfig::variant_named("fast").used_levels(), std::vector<int>{0});
+    EXPECT_THROW(ModelConfig::variant_named("hood", 4), ArgumentError);
+}
+
+TEST(ModelConfig, ItsTextHasLevelsOnlyWhereTheNetworkHas) {
+    EXPECT_EQ(ModelConfig::variant_named("fast").to_json().find("level"), std::string::npos);
+    for (const char* variant : {"hood", "hood_fast", "bistride"}) {
+        const ModelConfig config = ModelConfig::variant_named(variant, 9, 3);
+        const ModelConfig read = ModelConfig::from_json(config.to_json(), "here");
+        EXPECT_TRUE(read == config);
+        EXPECT_EQ(read.level_schedule, config.level_schedule);
+        EXPECT_EQ(read.pooling, config.pooling);
+    }
+}
+
+TEST(ModelConfig, RefusesLevelsThatCannotBe) {
+    const std::string text = ModelConfig::variant_named("hood", 5).to_json();
+    const auto refuses = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        const size_t at = changed.find(from);
+        ASSERT_NE(at, std::string::npos);
+        changed.replace(at, from.size(), to);
+        EXPECT_THROW(ModelConfig::from_json(changed, "here"), LoadError) << changed;
+    };
+    refuses("[0,1]", "[0,7]");
+    refuses("[0,1]", "[0]]");
+    refuses("[0,1],", "");
+    refuses("[0,1]", "\"mesh\"");
+    refuses("\"hood\",\"sampled", "\"pool\",\"sampled");
+    refuses("\"level_schedule\"", "\"level_schedul\"");
+}
+
 TEST(ModelConfig, SurvivesItsText) {
     ModelConfig config = ModelConfig::variant_named("sampling");
     config.width = 48;

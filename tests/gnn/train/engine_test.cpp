@@ -49,9 +49,8 @@ struct EngineScene {
 };
 
 ModelConfig small_config(const std::string& variant, int width = 32) {
-    ModelConfig config = ModelConfig::variant_named(variant);
+    ModelConfig config = ModelConfig::variant_named(variant, 5);
     config.width = width;
-    config.steps = 5;
     return config;
 }
 
@@ -97,7 +96,8 @@ TEST_P(EngineVariant, SameBitsForAnyThreadCountAndTwice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, EngineVariant,
-                         ::testing::Values("baseline", "sampling", "reduction", "fast"));
+                         ::testing::Values("baseline", "sampling", "reduction", "fast", "hood",
+                                           "hood_fast", "bistride"));
 
 TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
     const ModelConfig config = small_config("baseline", 48);
@@ -106,6 +106,47 @@ TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
     Engine engine(*weights);
     const Points expected = predict(*make_torch_predictor(*weights), scene);
     EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
+}
+
+TEST(Engine, TakesSchedulesThatSkipLevels) {
+    // Long edges beside the mesh's in every step, or a step on the coarsest level at the end.
+    for (const LevelSchedule& schedule :
+         {LevelSchedule{{0, 2}, {0, 2}, {0, 2}}, LevelSchedule{{2}, {1, 3}, {1}},
+          LevelSchedule{{1}, {0}, {0, 1}}})
+        for (const char* variant : {"hood", "hood_fast", "bistride"}) {
+            ModelConfig config = small_config(variant);
+            config.steps = 3;
+            config.level_schedule = schedule;
+            const EngineScene scene(config, 300);
+            const auto weights = random_weights(config);
+            Engine engine(*weights);
+            const Points expected = predict(*make_torch_predictor(*weights), scene);
+            EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
+        }
+}
+
+TEST(Engine, TakesGarmentsThatAreTooSmallForTheLevels) {
+    for (const char* variant : {"hood", "hood_fast", "bistride"})
+        for (const int vertices : {9, 30}) {
+            ModelConfig config = ModelConfig::variant_named(variant, 9, 4);
+            config.width = 32;
+            const EngineScene scene(config, vertices);
+            EXPECT_TRUE(scene.graph.coarse.back().nodes.empty());
+            const auto weights = random_weights(config);
+            Engine engine(*weights);
+            const Points expected = predict(*make_torch_predictor(*weights), scene);
+            ASSERT_TRUE(expected.allFinite());
+            EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
+        }
+}
+
+TEST(Engine, AGraphWithoutTheLevelsGivesNoFiniteNumber) {
+    const ModelConfig flat = small_config("fast"), config = small_config("hood_fast");
+    const EngineScene scene(flat, 120);
+    const auto weights = random_weights(config);
+    Engine engine(*weights);
+    EXPECT_FALSE(predict(engine, scene).allFinite());
+    EXPECT_FALSE(predict(*make_torch_predictor(*weights), scene).allFinite());
 }
 
 TEST(Engine, HasTheNameOfItsWeightsAsLibTorchHas) {

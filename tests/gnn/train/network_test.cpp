@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
 #include "gnn/train/message_op.h"
@@ -28,9 +30,8 @@ Features random_features(const ModelConfig& config, const ClothGraph& graph, int
 }
 
 ModelConfig small(const std::string& variant, int width = 16) {
-    ModelConfig config = ModelConfig::variant_named(variant);
+    ModelConfig config = ModelConfig::variant_named(variant, 3, /*levels=*/1);
     config.width = width;
-    config.steps = 3;
     return config;
 }
 
@@ -183,7 +184,8 @@ TEST_P(EveryVariant, PredictsTheSameAfterSavingAndLoading) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
-                         testing::Values("baseline", "sampling", "reduction", "fast"));
+                         testing::Values("baseline", "sampling", "reduction", "fast", "hood",
+                                         "hood_fast", "bistride"));
 
 TEST(Network, SamplingAsManyEdgesAsThereAreEqualsTakingAll) {
     ModelConfig all = small("reduction"), sampled = all;
@@ -193,6 +195,44 @@ TEST(Network, SamplingAsManyEdgesAsThereAreEqualsTakingAll) {
     const Features features = random_features(all, graph_all, 1);
     Network a(all, torch::kCPU, 9), b(sampled, torch::kCPU, 9);
     EXPECT_LT(difference(a.forward(graph_all, features), b.forward(graph_sampled, features)), 1e-4);
+}
+
+TEST(Network, AStepOnACoarseLevelLeavesTheOtherVerticesAsTheyAre) {
+    ModelConfig config = small("hood");
+    config.steps = 1;
+    config.level_schedule = {{1}};
+    const ClothGraph graph = build_cloth_graph(sheet(), config.graph_settings());
+    const std::vector<int>& nodes = graph.coarse[0].nodes;
+    Network network(config, torch::kCPU, 1);
+    const Features features = random_features(config, graph, 2);
+    const Tensor before = network.forward(graph, features);
+    network.parameters().view("step.0.node.output.bias").data() += torch::randn({16});
+    const Tensor change = (network.forward(graph, features) - before).abs().sum(1);
+    for (int i = 0; i < graph.vertex_count; ++i)
+        EXPECT_EQ(change[i].item<double>() != 0.0,
+                  std::binary_search(nodes.begin(), nodes.end(), i))
+            << "vertex " << i;
+}
+
+TEST(Network, CoarseLevelsCarryMessagesFartherThanTheMesh) {
+    // Five steps on the mesh reach five edges from the end of a strip.
+    const Garment strip("strip", make_sheet(1.0, 0.06, 150), Fabric::soft_cotton());
+    const auto reached = [&](const std::string& variant) {
+        ModelConfig config = ModelConfig::variant_named(variant, 5);
+        config.width = 16;
+        const ClothGraph graph = build_cloth_graph(strip, config.graph_settings());
+        Network network(config, torch::kCPU, 1);
+        Features features = random_features(config, graph, 2);
+        features.world_mask.setZero();
+        const Tensor before = network.forward(graph, features);
+        Eigen::Index end = 0;
+        strip.rest().vertices.col(0).minCoeff(&end);
+        features.node.row(end).array() += 1.0f;
+        const Tensor change = (network.forward(graph, features) - before).abs().sum(1);
+        return (change > 0).sum().item<int>();
+    };
+    EXPECT_GT(reached("hood"), 1.3 * reached("baseline"));
+    EXPECT_GT(reached("bistride"), 1.3 * reached("baseline"));
 }
 
 TEST(Network, PlainOperationsAgreeWithFusedOnes) {

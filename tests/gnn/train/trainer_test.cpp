@@ -72,6 +72,41 @@ TEST(Trainer, GoesOnExactlyWhereItStopped) {
     });
 }
 
+TEST(Trainer, TrainsAndResumesNetworksWithCoarseLevels) {
+    for (const char* variant : {"hood", "hood_fast", "bistride"}) {
+        TrainerSettings settings = tiny(std::string(variant) + "_straight", "kicks");
+        settings.model = ModelConfig::variant_named(variant, 5);
+        settings.model.width = 16;
+        Trainer straight(settings);
+        for (int k = 0; k < 8; ++k) straight.iterate();
+        settings.out = tiny(std::string(variant) + "_stopped").out;
+        {
+            Trainer first(settings);
+            for (int k = 0; k < 4; ++k) first.iterate();
+            first.save();
+        }
+        EXPECT_TRUE(Weights::load(settings.out + "/weights.safetensors").config == settings.model);
+        Trainer second(settings);
+        ASSERT_TRUE(second.resume());
+        for (int k = 0; k < 4; ++k) second.iterate();
+        EXPECT_EQ(numbers(straight), numbers(second)) << variant;
+    }
+}
+
+TEST(Trainer, ValidatesNetworksWithCoarseLevelsByRollouts) {
+    TrainerSettings settings = tiny("hood_validated");
+    settings.model = ModelConfig::variant_named("hood_fast", 5);
+    settings.model.width = 16;
+    settings.iterations = 8;
+    settings.report_every = 4;
+    settings.validate_every = 0.0;
+    settings.validation_share = 1.0;
+    const std::atomic<bool> go{false};
+    Trainer(settings).run(go);
+    EXPECT_TRUE(std::filesystem::exists(settings.out + "/metrics.csv"));
+    EXPECT_TRUE(std::filesystem::exists(settings.out + "/rollouts.csv"));
+}
+
 TEST(Trainer, EachStateOfTheRecipeChangesTheTraining) {
     const auto trained = [](const std::function<void(Recipe&)>& change) {
         TrainerSettings settings = tiny("states");
