@@ -163,8 +163,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// same.
     /// @param limits  one value per node in each array, or none
     /// @throws cloth::ArgumentError if the body is null, an array has a wrong size or a value is
-    /// out
-    ///         of range
+    ///         out of range
     void setGoalLimits(btSoftBody* body, const cloth::GoalLimits& limits);
     /// Gives the goals of the body's nodes before each stepSimulation(), as setAnimatedObstacle()
     /// gives skin. Goals that are not given anew stand still. Before they are given for the first
@@ -174,8 +173,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// @param goals     now and after `duration` seconds (|nodes| x 3, m, world frame)
     /// @param duration  usually the time of the stepSimulation() that follows; 0: one sub-step
     /// @throws cloth::ArgumentError if the body is null, an array has a wrong size or a number is
-    /// not
-    ///         finite
+    ///         not finite
     void setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration = 0.0);
     /// How much of its root's motion a body's cloth feels, 1 until set: with less, cloth of a
     /// character that runs or rides hangs and swings as on one that goes slowly. The rest of the

@@ -33,7 +33,12 @@ MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
         std::vector<std::string> gap = {solver, "gap"}, rollout = {solver, "rollout (mm)"};
         for (const std::string& group : groups) {
             const DataRow row = files.at(0).row("rows", {{"group", group}, {"solver", solver}});
-            gap.push_back(significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap"));
+            std::string of_step =
+                significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap");
+            if (row.number("/gap_scenes") < row.number("/scenes"))
+                of_step += ", in " + decimals(row.number("/gap_scenes"), 0) + " of " +
+                           decimals(row.number("/scenes"), 0);
+            gap.push_back(of_step);
             std::string cell =
                 significant(row.number("/rollout_mm"), 2) + times(row, seen, "/relative_rollout");
             if (row.number("/failed") > 0)

@@ -22,9 +22,14 @@ struct Collected {
     int failed = 0;
     std::vector<double> gap, rollout, relative_gap, relative_rollout;
 
-    void add(const SolverRow& row, const SolverRow& other) {
-        gap.push_back(row.gap_median);
-        relative_gap.push_back(row.gap_median / other.gap_median);
+    int scenes = 0;
+
+    void add(const SolverRow& row, const SolverRow& other, bool minimum_known) {
+        ++scenes;
+        if (minimum_known) {
+            gap.push_back(row.gap_median);
+            relative_gap.push_back(row.gap_median / other.gap_median);
+        }
         if (row.first_failed_frame) ++failed;
         if (row.first_failed_frame || other.first_failed_frame) return;
         rollout.push_back(row.rollout_rmse_mm);
@@ -46,13 +51,17 @@ std::vector<GroupSummary> summarise(const std::string& group, const std::vector<
         const auto end = begin + static_cast<std::ptrdiff_t>(solvers.size());
         const auto other = std::find_if(
             begin, end, [&](const SolverRow& row) { return row.solver == relative_to; });
-        for (auto row = begin; row != end; ++row) collected[row->solver].add(*row, *other);
+        const bool minimum_known =
+            std::all_of(begin, end, [](const SolverRow& row) { return row.gap_median >= 0.0; });
+        for (auto row = begin; row != end; ++row)
+            collected[row->solver].add(*row, *other, minimum_known);
     }
     std::vector<GroupSummary> summaries;
     for (const std::string& solver : solvers) {
         const Collected& all = collected[solver];
-        summaries.push_back({group, solver, static_cast<int>(all.gap.size()), all.failed,
-                             mean(all.gap), mean(all.rollout), geometric_mean(all.relative_gap),
+        summaries.push_back({group, solver, all.scenes, all.failed,
+                             static_cast<int>(all.gap.size()), mean(all.gap), mean(all.rollout),
+                             geometric_mean(all.relative_gap),
                              geometric_mean(all.relative_rollout)});
     }
     return summaries;
@@ -63,6 +72,7 @@ nlohmann::ordered_json to_json(const GroupSummary& summary) {
             {"solver", summary.solver},
             {"scenes", summary.scenes},
             {"failed", summary.failed},
+            {"gap_scenes", summary.gap_scenes},
             {"gap", rounded_number(summary.gap)},
             {"rollout_mm", rounded_number(summary.rollout_mm)},
             {"relative_gap", rounded_number(summary.relative_gap)},

@@ -12,9 +12,12 @@ namespace cloth {
 struct GroupSummary {
     std::string group, solver;
     int scenes = 0, failed = 0;  ///< failed: the rollout was lost or torn
-    double gap = 0.0;            ///< of one step: mean over the scenes of their medians
-    double rollout_mm = 0.0;     ///< to the reference of the same steps: mean over the scenes that
-                                 ///< it survived; NaN: none
+    /// Scenes that the gaps are of. Where a solver ends below what Newton's method found, the
+    /// minimum is not known, and the scene does not count.
+    int gap_scenes = 0;
+    double gap = 0.0;         ///< of one step: mean over these scenes of their medians
+    double rollout_mm = 0.0;  ///< to the reference of the same steps: mean over the scenes that
+                              ///< it survived; NaN: none
     /// The same over those of another solver in the same scene: geometric means. They do not tell
     /// how hard a scene is, so they compare groups.
     double relative_gap = 0.0, relative_rollout = 0.0;

@@ -50,6 +50,16 @@ TEST(GeneralisationSummary, LostRolloutsAreCountedNotAveraged) {
     EXPECT_TRUE(to_json(none[1]).at("rollout_mm").is_null());
 }
 
+TEST(GeneralisationSummary, GapsNeedAMinimum) {
+    const auto summaries = summarise(
+        "g", {row("base", 0.1, 10), row("net", 0.2, 5), row("base", 0.7, 10), row("net", -1.4, 5)},
+        "base");
+    EXPECT_EQ(summaries[1].scenes, 2);
+    EXPECT_EQ(summaries[1].gap_scenes, 1);
+    EXPECT_DOUBLE_EQ(summaries[0].gap, 0.1);
+    EXPECT_NEAR(summaries[1].relative_gap, 2.0, 1e-12);
+}
+
 TEST(GeneralisationCases, AllNamesAreThere) {
     for (const CaseGroup& group : generalisation_cases(5)) {
         EXPECT_FALSE(group.scenes.empty()) << group.name;
