@@ -60,7 +60,9 @@ TEST(GoalLimits, WrongSizesAndValuesAreRefusedByName) {
         EXPECT_NE(message(which, filled(-1e-9)).find(name), std::string::npos) << name;
         EXPECT_NE(message(which, filled(nan)).find("[0]"), std::string::npos) << name;
         EXPECT_NE(message(which, VectorX::Zero(3)).find("3 values"), std::string::npos) << name;
-        if (std::isfinite(most)) EXPECT_NE(message(which, filled(1.01 * most)), "") << name;
+        if (std::isfinite(most)) {
+            EXPECT_NE(message(which, filled(1.01 * most)), "") << name;
+        }
     }
 }
 
@@ -113,7 +115,9 @@ TEST(VertexGoal, WithinIsAllowedAndLeavesWhatIsAllowedAsItIs) {
         const Vec3 moved = goal.within(x);
         EXPECT_LE(goal.excess(moved), 1e-12);
         EXPECT_LE((moved - x).norm(), 2.0 * goal.excess(x) + 1e-12) << "at most both corrections";
-        if (goal.excess(x) == 0.0) EXPECT_EQ(moved, x);
+        if (goal.excess(x) == 0.0) {
+            EXPECT_EQ(moved, x);
+        }
         EXPECT_EQ(goal.excess(goal.place), 0.0) << "the goal itself is always allowed";
     }
 }
