@@ -7,8 +7,8 @@
 namespace cloth {
 namespace {
 
-constexpr double rounding = 1e-9;    // m: beyond a limit by less is within it
-constexpr double fair_depth = 1e-7;  // m: less deep in an obstacle is on its surface
+constexpr double goal_tolerance = 1e-9;  // m: beyond a limit by less is within it
+constexpr double fair_depth = 1e-7;      // m: less deep in an obstacle is on its surface
 constexpr double fair_move =
     1e-4;                  // m: goals that move vertices less leave the faces where they are
 constexpr int rounds = 4;  // of the limits and the obstacles in turn
@@ -62,7 +62,7 @@ void GoalProjection::bring_within(Points& x) {
     for (size_t k = 0; k < m_goals.size(); ++k) {
         const VertexGoal& goal = m_goals[k];
         const double excess = goal.excess(x.row(goal.vertex));
-        if (!(excess > rounding)) continue;
+        if (!(excess > goal_tolerance)) continue;
         x.row(goal.vertex) = goal.within(x.row(goal.vertex)).transpose();
         m_last.max_move = std::max(m_last.max_move, excess);
         m_moved.push_back(goal.vertex);
@@ -123,7 +123,7 @@ void GoalProjection::measure(const Points& x) {
     for (const Inside& inside : m_inside) {
         const VertexGoal& goal = m_goals[inside.goal];
         const double excess = goal.excess(x.row(goal.vertex));
-        if (!(excess > rounding)) continue;
+        if (!(excess > goal_tolerance)) continue;
         ++m_last.beyond;
         m_last.max_excess = std::max(m_last.max_excess, excess);
     }
