@@ -1,10 +1,11 @@
 #include "demos/lookbook/look.h"
 
+#include <algorithm>
+
 #include "collision/proximity/metrics.h"
 #include "demos/compare/figure_meshes.h"
 #include "demos/compare/json_numbers.h"
 #include "demos/compare/solver_factory.h"
-#include "demos/compare/statistics.h"
 
 namespace cloth {
 
@@ -25,24 +26,25 @@ void Look::settle() {
 }
 
 void Look::step() {
-    const int now = frame();
-    const Boundary boundary = m_scene.frame_boundary(now);
-    const StepReport report = m_stepper->step(boundary, m_scene.frame_time(), m_state);
-    measure(now, report);
-    if (!m_failure.empty()) return;
+    const Boundary boundary = m_scene.frame_boundary(m_frame);
+    measure(m_stepper->step(boundary, m_scene.frame_time(), m_state));
     const std::string loss = m_scene.loss(boundary, m_state.x);
-    if (!loss.empty()) m_failure = "frame " + std::to_string(now) + ": " + loss;
+    if (!loss.empty()) fail(loss);
+    ++m_frame;
 }
 
-void Look::measure(int frame, const StepReport& report) {
+void Look::measure(const StepReport& report) {
     const StretchStatistics stretch = measure_stretch(m_scene.garment(), m_state.x);
-    m_stretch_p99.push_back(stretch.p99);
-    m_stretch_max.push_back(stretch.max);
-    m_depth_mm.push_back(1e3 * report.max_penetration);
+    m_stretch_p99 = std::max(m_stretch_p99, stretch.p99);
+    m_stretch_max = std::max(m_stretch_max, stretch.max);
+    m_depth = std::max(m_depth, report.max_penetration);
     if (!report.finite) ++m_failed_steps;
-    if (stretch.p99 > 2.0 && m_failure.empty())
-        m_failure =
-            "frame " + std::to_string(frame) + ": torn: 1 % of the edges are stretched beyond 2";
+    if (stretch.p99 > 2.0) fail("torn: 1 % of the edges are stretched beyond 2");
+}
+
+/// Only the first failure counts.
+void Look::fail(const std::string& how) {
+    if (m_failure.empty()) m_failure = "frame " + std::to_string(m_frame) + ": " + how;
 }
 
 Scene Look::picture(size_t colour) const {
@@ -56,18 +58,15 @@ Scene Look::picture(size_t colour) const {
 }
 
 nlohmann::ordered_json Look::measured() const {
-    const auto most = [](const std::vector<double>& values) {
-        return rounded_number(quantile(values, 1.0));
-    };
     return {{"garment", m_garment},
             {"body", m_body},
             {"motion", m_motion},
             {"solver", m_stepper->name()},
             {"vertices", m_scene.garment().vertex_count()},
             {"frames", frame()},
-            {"stretch_p99", most(m_stretch_p99)},
-            {"stretch_max", most(m_stretch_max)},
-            {"depth_mm", most(m_depth_mm)},
+            {"stretch_p99", rounded_number(m_stretch_p99)},
+            {"stretch_max", rounded_number(m_stretch_max)},
+            {"depth_mm", rounded_number(1e3 * m_depth)},
             {"failed_steps", m_failed_steps},
             {"failure",
              m_failure.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(m_failure)}};

@@ -25,7 +25,7 @@ class Look {
 
     const BodyScene& scene() const { return m_scene; }
     int frames() const { return m_scene.frames(); }
-    int frame() const { return static_cast<int>(m_depth_mm.size()); }  ///< that comes next
+    int frame() const { return m_frame; }  ///< that comes next
 
     /// The lead-in, in which the body moves into the motion's first pose.
     void settle();
@@ -40,14 +40,16 @@ class Look {
     nlohmann::ordered_json measured() const;
 
  private:
-    void measure(int frame, const StepReport& report);
+    void measure(const StepReport& report);
+    void fail(const std::string& how);
 
     BodyScene m_scene;
     std::string m_garment, m_body, m_motion;
     std::unique_ptr<Stepper> m_stepper;
     ClothState m_state;
     std::vector<std::shared_ptr<const Faces>> m_faces;  ///< of each garment
-    std::vector<double> m_stretch_p99, m_stretch_max, m_depth_mm;
+    int m_frame = 0;
+    double m_stretch_p99 = 0.0, m_stretch_max = 0.0, m_depth = 0.0;  ///< largest so far; (m)
     int m_failed_steps = 0;
     std::string m_failure;
 };

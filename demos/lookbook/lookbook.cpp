@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "data/body/body_shapes.h"
 #include "demos/compare/body_named.h"
@@ -38,7 +37,6 @@ class Row {
         }
     }
 
-    const std::string& body() const { return m_body; }
     const std::vector<std::unique_ptr<Look>>& looks() const { return m_looks; }
     int frames() const { return m_looks.front()->frames(); }
 
