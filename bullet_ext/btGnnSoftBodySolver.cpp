@@ -414,6 +414,8 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
         throw ArgumentError(cloth::softBodyName(*body) + ": teleport()", "the motion is not finite",
                             "give the motion from the old place to the new one");
     Entry& entry = m_entries[body];
+    // What was cut is told by where the nodes were shown.
+    if (entry.step && cloth::topologySignature(*body) != entry.topology) refresh(*body, entry);
     const bool reset = kind == btGnnTeleport::reset && entry.limits;
     const cloth::Points places = reset ? goalsOf(*body, entry)->now() : cloth::nodePositions(*body);
     for (int i = 0; i < body->m_nodes.size(); ++i) {

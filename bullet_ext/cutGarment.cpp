@@ -58,7 +58,8 @@ std::optional<Garment> garmentAfterCut(const btSoftBody& body, const Garment& be
     const Points now = nodePositions(body);
     const Eigen::Index old = shown.rows();
     const double same = 1e-4 * before.mean_edge_length();
-    if (now.rows() < old || !((now.topRows(old) - shown).cwiseAbs().maxCoeff() <= same))
+    if (before.vertex_count() != old || now.rows() < old ||
+        !((now.topRows(old) - shown).cwiseAbs().maxCoeff() <= same))
         return std::nullopt;
     Points rest(now.rows(), 3);
     rest.topRows(old) = before.rest().vertices;
