@@ -1,6 +1,7 @@
 #include "collision/self/self_crossings.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "collision/geometry/gather_in_order.h"
@@ -53,15 +54,23 @@ SelfCrossings::SelfCrossings(const Garment& garment)
 const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
     m_motion = x1 - x0;
     m_faces.find(x0, m_motion, touching, threads);
+    m_bounds.update(m_elements, x0, m_motion);
+    std::atomic<bool> touching = false;
     const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         const auto& [f, g] = faces[static_cast<size_t>(k)];
+        const float far = (1.0f + 1e-6f) * m_bounds.approach(f, g);
         m_elements.visit(f, g, [&](const ElementPair& elements) {
             SelfPair pair;
-            if (crosses(elements, x0, m_motion, pair)) out.push_back(pair);
+            if (!m_bounds.may_be_near(elements, far)) return;
+            if (crosses(elements, x0, m_motion, pair))
+                out.push_back(pair);
+            else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
+                touching.store(true, std::memory_order_relaxed);
         });
     };
     gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
+    m_passed_over_none = !touching;
     return m_found;
 }
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "collision/self/element_bounds.h"
 #include "collision/self/face_pairs.h"
 #include "collision/self/self_proximity.h"
 
@@ -24,12 +25,17 @@ class SelfCrossings {
 
     const std::vector<SelfPair>& found() const { return m_found; }  ///< in an order of x0, x1 alone
 
+    /// Whether none was passed over: what was untangled at x0 and is not found is so at x1.
+    bool passed_over_none() const { return m_passed_over_none; }
+
  private:
     SelfElements m_elements;
     FacePairs m_faces;
+    ElementBounds m_bounds;
     Points m_motion;  ///< |V| x 3 (m)
     std::vector<SelfPair> m_found;
     std::vector<std::vector<SelfPair>> m_parts;
+    bool m_passed_over_none = false;
 };
 
 /// Whether two elements touch on the way from x0 to x0 + motion, and as what pair. Conservative

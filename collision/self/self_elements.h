@@ -44,17 +44,19 @@ class SelfElements {
     void visit(int f, int g, const Visit& visit) const {
         visit_vertices(f, g, visit);
         visit_vertices(g, f, visit);
-        for (const int a : edges_of(f))
+        for (const int a : edges_of(f)) {
+            if (a < 0) break;
+            const auto [a0, a1] = m_edges[static_cast<size_t>(a)];
             for (const int b : edges_of(g)) {
-                if (a < 0 || b < 0) continue;
-                const auto& [a0, a1] = m_edges[static_cast<size_t>(a)];
-                const auto& [b0, b1] = m_edges[static_cast<size_t>(b)];
-                if (a0 == b0 || a0 == b1 || a1 == b0 || a1 == b1) continue;
+                if (b < 0) break;
+                const auto [b0, b1] = m_edges[static_cast<size_t>(b)];
+                if ((a0 == b0) | (a0 == b1) | (a1 == b0) | (a1 == b1)) continue;
                 visit(ElementPair{{a0, a1, b0, b1}, {a, b}, true});
             }
+        }
     }
 
-    /// Edges that face f owns, -1 where there are fewer than three.
+    /// Edges that face f owns, then -1 where there are fewer than three.
     const std::array<int, 3>& edges_of(int f) const { return m_own_edges[static_cast<size_t>(f)]; }
 
     const Faces& faces() const { return m_faces; }
@@ -64,14 +66,16 @@ class SelfElements {
     template <typename Visit>
     void visit_vertices(int f, int g, const Visit& visit) const {
         const int a = m_faces(g, 0), b = m_faces(g, 1), c = m_faces(g, 2);
-        for (const int v : m_own_vertices[static_cast<size_t>(f)])
-            if (v >= 0 && v != a && v != b && v != c)
-                visit(ElementPair{{v, a, b, c}, {v, g}, false});
+        for (const int v : m_own_vertices[static_cast<size_t>(f)]) {
+            if (v < 0) break;
+            if ((v != a) & (v != b) & (v != c)) visit(ElementPair{{v, a, b, c}, {v, g}, false});
+        }
     }
 
     Faces m_faces;
     std::vector<std::array<int, 2>> m_edges;
-    std::vector<std::array<int, 3>> m_own_vertices, m_own_edges;  ///< |F|, -1: fewer than three
+    std::vector<std::array<int, 3>> m_own_vertices,
+        m_own_edges;  ///< |F|; at the end -1: fewer than three
 };
 
 }  // namespace cloth

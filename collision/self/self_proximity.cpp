@@ -60,10 +60,10 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
     const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         const auto [f, g] = faces[static_cast<size_t>(k)];
-        const double far = reach + m_bounds.approach(f, g);
+        const float far = (1.0f + 1e-6f) * (static_cast<float>(reach) + m_bounds.approach(f, g));
         m_elements.visit(f, g, [&](const ElementPair& elements) {
             SelfPair pair;
-            if (m_bounds.may_be_near(elements, x, far) && is_near(elements, x, motion, reach, pair))
+            if (m_bounds.may_face(elements, far) && is_near(elements, x, motion, reach, pair))
                 out.push_back(pair);
         });
     };

@@ -41,6 +41,7 @@ SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts&
     if (m_settings.rounds == 0) return report;
     report.left = report.crossings =
         static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
+    report.keeps_untangled = report.left == 0 && m_crossings.passed_over_none();
     if (report.left == 0) return report;
     m_before = x;
     m_guard.begin_frame(x);
@@ -59,6 +60,7 @@ SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts&
         }
         report.rigid = m_zones.vertex_count();
     }
+    report.keeps_untangled = report.left == 0 && m_crossings.passed_over_none();
     note_moved(x);
     return report;
 }

@@ -17,6 +17,8 @@ struct SelfResolveReport {
     int rounds = 0;     ///< of pushes
     int rigid = 0;      ///< vertices that had to move like rigid bodies in the end
     int left = 0;       ///< pairs that still pass, such as between pins that cross
+    /// Whether what was untangled at t is so at t + dt; false: not known.
+    bool keeps_untangled = false;
 };
 
 /// Contact projection of a step for cloth that passes through itself: pairs of elements that

@@ -53,21 +53,22 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
                                         const std::vector<int>& row_of) {
     m_self = &energy;
     m_self_contacts.clear();
+    m_springs.clear();
+    if (std::all_of(row_of.begin(), row_of.end(), [](int row) { return row < 0; })) return;
     for (const SelfContactEnergy::Pair& pair : energy.pairs()) {
         SelfContact contact{{}, pair.weight, pair.normal, pair.stiffness};
         for (size_t k = 0; k < 4; ++k) {
             contact.row[k] = row_of[static_cast<size_t>(pair.vertex[k])];
-            if (contact.row[k] < 0) contact.weight[k] = 0.0;
+            // what does not move has no part in the blocks
+            if (contact.row[k] < 0) contact.row[k] = 0, contact.weight[k] = 0.0;
         }
         m_self_contacts.push_back(contact);
     }
 }
 
 double ContactHessian::SelfContact::along(const Points& direction) const {
-    double sum = 0.0;
-    for (size_t k = 0; k < 4; ++k)
-        if (weight[k] != 0.0) sum += weight[k] * direction.row(row[k]).dot(normal.transpose());
-    return sum;
+    const auto at = [&](size_t k) { return weight[k] * direction.row(row[k]); };
+    return (at(0) + at(1) + at(2) + at(3)).dot(normal.transpose());
 }
 
 void ContactHessian::linearise(const IncrementalPotential& potential, const Points& x) {
@@ -125,8 +126,9 @@ bool ContactHessian::anticipate(const Points& step) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - contact.along(step);
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
-        any = any || contact.stiffness > 0.0;
     }
+    gather_springs();
+    any = any || !m_springs.empty();
     if (m_goals.active()) m_goals.anticipate(step);
     return any || !m_goals.blocks().empty();
 }
@@ -156,19 +158,48 @@ void ContactHessian::for_each_force(const Points& direction, const Visit& visit)
         const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
         visit(slider.row, slider.stiffness * tangential);
     }
-    for (const SelfContact& contact : m_self_contacts) {
-        if (contact.stiffness == 0.0) continue;
-        const Vec3 force = contact.stiffness * contact.along(direction) * contact.normal;
-        for (size_t k = 0; k < 4; ++k)
-            if (contact.weight[k] != 0.0) visit(contact.row[k], contact.weight[k] * force);
-    }
     for (const GoalHessian::Block& block : m_goals.blocks())
         visit(block.row, block.stiffness * direction.row(block.row).transpose());
+}
+
+void ContactHessian::gather_springs() {
+    m_springs.clear();
+    for (const SelfContact& contact : m_self_contacts) {
+        if (!(contact.stiffness > 0.0)) continue;
+        Spring& spring = m_springs.emplace_back();
+        spring.row = contact.row;
+        for (size_t k = 0; k < 4; ++k) {
+            spring.weight[k] = static_cast<float>(contact.weight[k]);
+        }
+        for (size_t k = 0; k < 3; ++k)
+            spring.normal[k] = static_cast<float>(contact.normal[static_cast<Eigen::Index>(k)]);
+        spring.stiffness = static_cast<float>(contact.stiffness);
+    }
+}
+
+void ContactHessian::add_springs(const Points& direction, Points& product) const {
+    const double* const from = direction.data();
+    double* const to = product.data();
+    for (const Spring& spring : m_springs) {
+        const double nx = spring.normal[0], ny = spring.normal[1], nz = spring.normal[2];
+        double along = 0.0;
+        for (size_t k = 0; k < 4; ++k) {
+            const double* const row = from + 3 * static_cast<Eigen::Index>(spring.row[k]);
+            along += spring.weight[k] * (row[0] * nx + row[1] * ny + row[2] * nz);
+        }
+        along *= spring.stiffness;
+        for (size_t k = 0; k < 4; ++k) {
+            double* const row = to + 3 * static_cast<Eigen::Index>(spring.row[k]);
+            const double force = along * spring.weight[k];
+            row[0] += force * nx, row[1] += force * ny, row[2] += force * nz;
+        }
+    }
 }
 
 void ContactHessian::add_product(const Points& direction, Points& product) const {
     for_each_force(direction,
                    [&](int row, const Vec3& force) { product.row(row) += force.transpose(); });
+    add_springs(direction, product);
 }
 
 void ContactHessian::add_moments(const AffineFields& fields, const Points& direction,
@@ -180,6 +211,10 @@ void ContactHessian::add_moments(const AffineFields& fields, const Points& direc
         for (int k = 0; k < 3; ++k) sum.col(k) += force[k] * f;
     });
     moments += sum;
+    if (m_springs.empty()) return;
+    m_spring_forces.setZero(direction.rows(), 3);
+    add_springs(direction, m_spring_forces);
+    moments += fields.moments(m_spring_forces);
 }
 
 void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& system) const {
@@ -204,9 +239,10 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
     for (const Ridge& ridge : m_ridges)
         if (ridge.stiffness > 0.0)
             add(combined(ridge.row, ridge.weight), ridge.normal, ridge.stiffness);
-    for (const SelfContact& contact : m_self_contacts)
-        if (contact.stiffness > 0.0)
-            add(combined(contact.row, contact.weight), contact.normal, contact.stiffness);
+    for (const Spring& spring : m_springs)
+        add(combined(spring.row, spring.weight),
+            Eigen::Map<const Eigen::Vector3f>(spring.normal.data()).cast<double>(),
+            spring.stiffness);
     AffineFields::Weights sliding = AffineFields::Weights::Zero();
     for (const Slider& slider : m_sliders) {
         const Row f = fields.at(slider.row);

@@ -84,7 +84,7 @@ class ContactHessian {
     };
 
     struct SelfContact {
-        std::array<int, 4> row;        ///< -1: a pin
+        std::array<int, 4> row;        ///< 0 for a pin
         std::array<double, 4> weight;  ///< 0 for a pin
         Vec3 normal;
         double pair_weight;      ///< w of this pair (N/m^2)
@@ -93,11 +93,21 @@ class ContactHessian {
 
         double along(const Points& direction) const;  ///< of a free array (n x 3)
     };
+    /// Those of the self-contacts that have a stiffness, packed: they are gone through twice in
+    /// each iteration of a solve. Single precision changes the direction of a step by a rounding.
+    struct Spring {
+        std::array<int, 4> row;       ///< 0 for a pin
+        std::array<float, 4> weight;  ///< 0 for a pin
+        std::array<float, 3> normal;
+        float stiffness;  ///< (N/m)
+    };
 
     /// visit(free row, force) for the parts of blocks * direction.
     template <class Visit>
     void for_each_force(const Points& direction, const Visit& visit) const;
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
+    void gather_springs();
+    void add_springs(const Points& direction, Points& product) const;
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
 
@@ -107,6 +117,8 @@ class ContactHessian {
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
+    std::vector<Spring> m_springs;
+    mutable Points m_spring_forces;  ///< n x 3, scratch
     const SelfContactEnergy* m_self = nullptr;
     GoalHessian m_goals;
     Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there is self-contact

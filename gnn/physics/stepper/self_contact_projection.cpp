@@ -12,6 +12,10 @@ constexpr double fair_depth =
     1e-4;  // m: vertices less deep in an obstacle are left to the next step
 constexpr int vertex_iterations = 3;  // of push_out_rows
 
+bool same(const Points& a, const Points& b) {
+    return a.rows() == b.rows() && a == b;
+}
+
 }  // namespace
 
 SelfContactProjection::SelfContactProjection(const Garment& garment,
@@ -27,6 +31,7 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
                                    StepReport& report) {
     if (!m_tools || !x.allFinite()) return;
     m_last = {};
+    m_next_untangled.resize(0, 3);
     const bool obstacles = !boundary.obstacles.empty();
     for (int pass = 0; pass < passes; ++pass) {
         const SelfResolveReport resolved =
@@ -35,6 +40,7 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
         m_last.rounds += resolved.rounds;
         m_last.rigid = std::max(m_last.rigid, resolved.rigid);
         m_last.left = resolved.left;
+        m_last.keeps_untangled = resolved.keeps_untangled;
         if (m_tools->resolver.moved().empty() || !obstacles) break;
         m_rows = m_tools->resolver.moved();
         proximity.query_rows(x, m_rows, boundary, contacts, StepEnd::end);
@@ -43,13 +49,22 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
         if (depth < fair_depth || pass + 1 == passes) break;
         push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x, contacts);
     }
+    if (m_last.keeps_untangled && same(x0, m_untangled)) m_next_untangled = x;
 }
 
 void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {
     if (!m_tools || !x.allFinite()) return;
+    if (same(x, m_next_untangled)) {
+        m_untangled.swap(m_next_untangled);
+        return;
+    }
     const std::vector<Tangle>& tangles = m_tools->tangles.find(x, m_settings.threads);
     report.tangles = static_cast<int>(tangles.size());
-    if (!tangles.empty()) report.first_tangle = tangles.front().point;
+    m_untangled.resize(0, 3);
+    if (tangles.empty())
+        m_untangled = x;
+    else
+        report.first_tangle = tangles.front().point;
 }
 
 double SelfContactProjection::depth_of_moved(const SurfaceContacts& contacts) {

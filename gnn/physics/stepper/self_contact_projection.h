@@ -24,7 +24,8 @@ class SelfContactProjection {
     void finish(const Points& x0, Proximity& proximity, const Boundary& boundary, double distance,
                 Points& x, SurfaceContacts& contacts, StepReport& report);
 
-    /// Counts them in `report`, at the end of all.
+    /// Counts them in `report`, at the end of all. Does not look for them where x is what the last
+    /// finish() made of positions without any, and nothing passed through anything.
     void count_tangles(const Points& x, StepReport& report);
 
     bool on() const { return m_tools.has_value(); }
@@ -44,6 +45,8 @@ class SelfContactProjection {
     std::vector<int> m_rows;
     SurfaceContacts m_none;  ///< where there are no obstacles
     SelfResolveReport m_last;
+    Points m_untangled;       ///< |V| x 3 (m): positions at which there are none, or empty
+    Points m_next_untangled;  ///< as the last finish() knows them
 };
 
 }  // namespace cloth

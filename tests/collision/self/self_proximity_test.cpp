@@ -14,32 +14,6 @@ namespace {
 
 using namespace test;
 
-using Key = std::array<int, 3>;  // edges or not, the elements
-
-Key key_of(const ElementPair& pair) {
-    const auto [first, second] = pair.element;
-    if (pair.edges) return {1, std::min(first, second), std::max(first, second)};
-    return {0, first, second};
-}
-
-/// Every vertex with every face and every edge with every edge.
-template <typename Visit>
-void visit_all(const Garment& garment, const Visit& visit) {
-    const Faces& faces = garment.rest().faces;
-    for (int v = 0; v < garment.vertex_count(); ++v)
-        for (int f = 0; f < faces.rows(); ++f)
-            if ((faces.row(f).array() != v).all())
-                visit(ElementPair{{v, faces(f, 0), faces(f, 1), faces(f, 2)}, {v, f}, false});
-    const auto& edges = garment.edges();
-    for (size_t a = 0; a < edges.size(); ++a)
-        for (size_t b = a + 1; b < edges.size(); ++b) {
-            const auto [p, q] = edges[a];
-            const auto [r, s] = edges[b];
-            if (p == r || p == s || q == r || q == s) continue;
-            visit(ElementPair{{p, q, r, s}, {int(a), int(b)}, true});
-        }
-}
-
 /// The definition of SelfProximity::find, without its shortcuts; gives the pairs' distances at x.
 std::map<Key, double> brute_force(const Garment& garment, const Points& x, const Points& motion,
                                   double reach, double thickness) {

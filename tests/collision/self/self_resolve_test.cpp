@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "collision/self/self_crossings.h"
 #include "collision/self/self_tangles.h"
 #include "tests/collision/self/self_scenes.h"
 
@@ -89,6 +92,38 @@ TEST(Crosses, AgreesWithTheRootsOfTheVolume) {
     }
     EXPECT_GT(crossings, 200);
     EXPECT_GT(misses, 1000);
+}
+
+TEST(SelfCrossings, FindsWhatBruteForceFinds) {
+    const Garment garment = strip();
+    SelfCrossings crossings(garment);
+    const Points x = wound(garment.rest().vertices, 8e-3);
+    size_t all = 0;
+    for (const double size : {1e-4, 3e-3, 2e-2}) {
+        // what all have in common changes nothing
+        const Points end = (x + crumpling(x, size)).rowwise() + Eigen::RowVector3d(0.3, -2.0, 0.1);
+        const Points motion = end - x;
+        std::set<Key> expected, found;
+        visit_all(garment, [&](const ElementPair& elements) {
+            SelfPair pair;
+            if (crosses(elements, x, motion, pair)) expected.insert(key_of(elements));
+        });
+        for (const SelfPair& pair : crossings.find(x, end, 2)) found.insert(key_of(pair.elements));
+        EXPECT_EQ(found, expected) << size;
+        EXPECT_EQ(found.size(), crossings.found().size()) << "a pair comes twice";
+        EXPECT_TRUE(crossings.passed_over_none());
+        all += found.size();
+    }
+    EXPECT_GT(all, 100u);
+}
+
+TEST(SelfCrossings, SayWhetherElementsThatTouchWerePassedOver) {
+    const MergedGarments sheets = two_sheets(0.0);
+    SelfCrossings crossings(sheets.garment);
+    Points x = sheets.garment.rest().vertices;
+    const Points end = x + crumpling(x, 1e-3);
+    crossings.find(x, end, 1);
+    EXPECT_FALSE(crossings.passed_over_none()) << "two sheets at one place";
 }
 
 TEST(Crosses, FlatClothThatSlidesInItsPlaneDoesNot) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "collision/self/self_elements.h"
 #include "data/authoring/sheet.h"
 #include "data/core/garment_pieces.h"
 #include "tests/test_meshes.h"
@@ -35,6 +38,32 @@ inline MergedGarments two_sheets(double gap, int vertices = 150) {
     return merge_garments("two sheets",
                           {Garment("below", make_sheet(0.3, 0.3, vertices), Fabric::soft_cotton()),
                            Garment("above", above, Fabric::soft_cotton())});
+}
+
+using Key = std::array<int, 3>;  // edges or not, the elements
+
+inline Key key_of(const ElementPair& pair) {
+    const auto [first, second] = pair.element;
+    if (pair.edges) return {1, std::min(first, second), std::max(first, second)};
+    return {0, first, second};
+}
+
+/// Every vertex with every face and every edge with every edge.
+template <typename Visit>
+void visit_all(const Garment& garment, const Visit& visit) {
+    const Faces& faces = garment.rest().faces;
+    for (int v = 0; v < garment.vertex_count(); ++v)
+        for (int f = 0; f < faces.rows(); ++f)
+            if ((faces.row(f).array() != v).all())
+                visit(ElementPair{{v, faces(f, 0), faces(f, 1), faces(f, 2)}, {v, f}, false});
+    const auto& edges = garment.edges();
+    for (size_t a = 0; a < edges.size(); ++a)
+        for (size_t b = a + 1; b < edges.size(); ++b) {
+            const auto [p, q] = edges[a];
+            const auto [r, s] = edges[b];
+            if (p == r || p == s || q == r || q == s) continue;
+            visit(ElementPair{{p, q, r, s}, {int(a), int(b)}, true});
+        }
 }
 
 }  // namespace cloth::test
