@@ -16,6 +16,10 @@ HardSceneParts armpit_pinch();
 HardSceneParts crotch_pinch();
 HardSceneParts closing_boxes();
 
+// characters: character_scenes.cpp
+HardSceneParts fast_cape();
+HardSceneParts clipping_armature();
+
 // cloth against itself: self_contact_cases.cpp
 HardSceneParts falls_on_edge();
 HardSceneParts two_layers();

@@ -47,7 +47,7 @@ HardResult run_stepper(const HardContest& contest, const HardScene& scene,
     }
     const std::string reason = not_applicable(*solver, scene);
     if (!reason.empty()) return without_run(skipped_row(hard, stepper, reason, contest.frames));
-    const HardRun run = run_hard_case(hard, scene, *solver, [&](int done) {
+    const HardRun run = run_hard_case(hard, scene, *solver, contest.drawn, [&](int done) {
         progress(done, scene.frames(), hard.name + ", " + stepper);
     });
     const HardRow row = make_row(hard, stepper, run, contest.frames);

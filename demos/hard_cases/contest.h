@@ -16,6 +16,7 @@ struct HardContest {
     int frames = 0;
     std::vector<std::string> steppers;
     SolverSettings solver;
+    std::vector<int> drawn = {};  ///< frames at which strips have the garment, ascending
 };
 
 struct HardResult {

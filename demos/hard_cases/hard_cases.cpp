@@ -86,6 +86,20 @@ const std::vector<HardCase>& hard_cases() {
             .scene(body_spin)
             .stretch(1.23)
             .because("reference 1.12"),
+        Case("fast-cape",
+             "a cape with skinned goals and self-contact on a character that turns and darts about "
+             "three times as fast as people do")
+            .lasts(120)
+            .scene(fast_cape)
+            .stretch(1.3)
+            .tangles(40)
+            .because("it pulls with twenty times its weight; where it is folded over in a step, "
+                     "few of its 1,700 edges may stay tangled"),
+        Case("clipping-armature", "a T-shirt on a body whose arms pass through its trunk and back")
+            .lasts(120)
+            .scene(clipping_armature)
+            .stretch(1.5)
+            .because("a sleeve that is squeezed between arm and trunk stretches"),
         Case("hands-through-shirt", "a thin capsule moves into a hanging sheet at 2 m/s and back")
             .lasts(45)
             .scene(hands_through_shirt)

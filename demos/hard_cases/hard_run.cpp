@@ -26,14 +26,15 @@ int ticks_per_frame(const Stepper& stepper, const HardScene& scene) {
 /// Runs one case frame by frame and holds each against the bounds.
 class HardMeter {
  public:
-    HardMeter(const HardCase& hard, const HardScene& scene, Stepper& stepper)
+    HardMeter(const HardCase& hard, const HardScene& scene, Stepper& stepper,
+              const std::vector<int>& kept)
         : m_bounds(hard.bounds),
           m_in_full(scene.frames() >= hard.frames),
           m_scene(scene),
           m_stepper(stepper),
           m_state(scene.start()),
           m_tangles(scene.garment()),
-          m_pictures(picture_frames(scene.frames())) {}
+          m_kept(kept) {}
 
     bool advance(int frame) {
         const Points before = m_state.x;
@@ -45,8 +46,7 @@ class HardMeter {
             return false;
         }
         measure(frame, before);
-        if (std::count(m_pictures.begin(), m_pictures.end(), frame) > 0)
-            m_run.x.push_back(m_state.x);
+        if (std::binary_search(m_kept.begin(), m_kept.end(), frame)) m_run.x.push_back(m_state.x);
         return true;
     }
 
@@ -153,7 +153,7 @@ class HardMeter {
     Proximity m_proximity;
     ClothState m_state;
     SelfTangles m_tangles;
-    std::vector<int> m_pictures;
+    const std::vector<int>& m_kept;
     std::vector<double> m_motion_mm;
     HardRun m_run;
 };
@@ -176,8 +176,8 @@ std::string not_applicable(const Stepper& stepper, const HardScene& scene) {
 }
 
 HardRun run_hard_case(const HardCase& hard, const HardScene& scene, Stepper& stepper,
-                      const std::function<void(int)>& done) {
-    HardMeter meter(hard, scene, stepper);
+                      const std::vector<int>& frames, const std::function<void(int)>& done) {
+    HardMeter meter(hard, scene, stepper, frames);
     for (int frame = 0; frame < scene.frames() && meter.advance(frame); ++frame) done(frame + 1);
     return meter.finish();
 }

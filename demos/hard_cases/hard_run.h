@@ -22,7 +22,7 @@ struct HardRun {
     std::vector<int> tangles;        ///< edges through faces, if the case has a bound on them
     std::vector<double> surface_mm;  ///< deepest point, edge midpoints and face centres included
     std::optional<double> rest_jitter_mm;  ///< of a case that ran in full
-    std::vector<Points> x;                 ///< the garment at picture_frames(), as far as it got
+    std::vector<Points> x;  ///< the garment at the frames asked for, as far as it got
 
     bool held() const { return !first_failed_frame; }
 };
@@ -38,9 +38,10 @@ std::string not_applicable(const Stepper& stepper, const HardScene& scene);
 ///
 /// A stepper with a time step of its own takes as many of its steps per frame as make a frame of
 /// the case, as a Bullet world would let it.
-/// @param done  called after every frame
+/// @param frames  at which the garment is kept, such as picture_frames()
+/// @param done    called after every frame
 HardRun run_hard_case(const HardCase& hard, const HardScene& scene, Stepper& stepper,
-                      const std::function<void(int)>& done);
+                      const std::vector<int>& frames, const std::function<void(int)>& done);
 
 /// The axis of a capsule that crosses a face: cloth that a limb has passed through. Vertices alone
 /// do not show it.

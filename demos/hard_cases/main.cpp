@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 
 #include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
@@ -16,7 +17,7 @@ using namespace cloth;
 
 namespace {
 
-constexpr int soak_frames = 10000;
+constexpr int soak_frames = 10000, most_film_frames = 1000;
 
 void list_cases() {
     for (const HardCase& hard : hard_cases())
@@ -43,16 +44,19 @@ void run_case(const HardCaseOptions& options, const HardContest& contest, HardRe
     for (const std::string& stepper : left) {
         const HardCase hard = bounded(*contest.hard, report, contest.frames);
         const HardResult result = run_stepper(
-            {&hard, contest.frames, {}, contest.solver}, scene, stepper,
+            {&hard, contest.frames, {}, contest.solver, contest.drawn}, scene, stepper,
             [&](int done, int all, const std::string& what) { line.update(done, all, what); });
         report.add(result.row);
         strips.push_back(result.strip);
         std::printf("%s\n", text_line(result.row).c_str());
         std::fflush(stdout);
     }
+    const std::string file = options.out + "/" + contest.hard->name;
     if (options.pictures)
-        write_png(options.out + "/" + contest.hard->name + ".png",
-                  draw_hard_case(scene, picture_frames(contest.frames), strips));
+        write_png(file + ".png",
+                  draw_hard_case(scene, contest.drawn, picture_frames(contest.frames), strips));
+    if (options.films && contest.frames <= most_film_frames)
+        film_hard_case(file + ".mp4", scene, contest.drawn, strips);
 }
 
 void run(const HardCaseOptions& options) {
@@ -66,7 +70,12 @@ void run(const HardCaseOptions& options) {
     const auto run_one = [&](const HardCase& hard) {
         const int frames =
             scaled_frames(hard, options.frames_scale, options.soak ? soak_frames : 0);
-        run_case(options, {&hard, frames, options.steppers, solver}, report, line);
+        std::vector<int> drawn = picture_frames(frames);
+        if (options.films && frames <= most_film_frames) {
+            drawn.resize(static_cast<size_t>(frames));
+            std::iota(drawn.begin(), drawn.end(), 0);
+        }
+        run_case(options, {&hard, frames, options.steppers, solver, drawn}, report, line);
     };
     for (const std::string& name : options.cases) run_one(hard_case(name));
     for (const std::string& motion : with_folders_listed(options.motions))

@@ -49,6 +49,8 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
     app.add_flag("--no-pictures", no_pictures,
                  "else one picture per case: a row per solver, its first, middle\n"
                  "and last frame");
+    app.add_flag("--films", options.films,
+                 "also one film per case, of all frames of cases of at most 1,000");
     app.add_flag("--markdown", options.markdown, "prints a table in Markdown at the end");
     app.add_flag("--resume", options.resume,
                  "keeps what hard_cases.json has; run it again without after a\n"

@@ -15,6 +15,7 @@ struct HardCaseOptions {
     bool soak = false;                  ///< the soak cases run for 10,000 frames
     bool list = false;                  ///< name the cases and stop
     bool pictures = true;
+    bool films = false;
     bool markdown = false;  ///< print the table in Markdown, too
     bool resume = false;    ///< keep the rows that are in the file already
     int threads = 0;        ///< of the engine; 0: all cores

@@ -5,6 +5,7 @@
 
 #include "render/montage.h"
 #include "render/osmesa_renderer.h"
+#include "render/video.h"
 
 namespace cloth {
 namespace {
@@ -83,27 +84,73 @@ class Moment {
     Camera m_camera;
 };
 
+/// Draws rows of panels with one renderer.
+class RowPainter {
+ public:
+    RowPainter(const HardScene& scene, const std::vector<HardStrip>& strips)
+        : m_scene(scene), m_strips(strips), m_renderer(panel_size()) {
+        m_layout.columns = static_cast<int>(strips.size());
+        m_layout.caption_height = 20;
+    }
+
+    /// Adds the panels of a frame, which is the strips' index-th.
+    void add(int frame, size_t index) {
+        const Moment moment(m_scene, frame, index, m_strips);
+        const bool first = m_panels.empty();
+        for (const HardStrip& strip : m_strips) {
+            m_panels.push_back(moment.draw(m_renderer, strip));
+            m_captions.push_back(first ? strip.caption : "frame " + std::to_string(frame));
+        }
+    }
+
+    /// All panels since the last take().
+    Image take() {
+        const Image image = montage(m_panels, m_captions, m_layout);
+        m_panels.clear();
+        m_captions.clear();
+        return image;
+    }
+
+ private:
+    static OsmesaSettings panel_size() {
+        OsmesaSettings size;
+        size.width = panel_width;
+        size.height = panel_height;
+        return size;
+    }
+
+    const HardScene& m_scene;
+    const std::vector<HardStrip>& m_strips;
+    OsmesaRenderer m_renderer;
+    MontageSettings m_layout;
+    std::vector<Image> m_panels;
+    std::vector<std::string> m_captions;
+};
+
 }  // namespace
 
 Image draw_hard_case(const HardScene& scene, const std::vector<int>& frames,
-                     const std::vector<HardStrip>& strips) {
-    OsmesaSettings size;
-    size.width = panel_width;
-    size.height = panel_height;
-    OsmesaRenderer renderer(size);
-    std::vector<Image> panels;
-    std::vector<std::string> captions;
-    for (size_t row = 0; row < frames.size(); ++row) {
-        const Moment moment(scene, frames[row], row, strips);
-        for (const HardStrip& strip : strips) {
-            panels.push_back(moment.draw(renderer, strip));
-            captions.push_back(row == 0 ? strip.caption : "frame " + std::to_string(frames[row]));
-        }
+                     const std::vector<int>& rows, const std::vector<HardStrip>& strips) {
+    RowPainter painter(scene, strips);
+    for (size_t k = 0; k < frames.size(); ++k)
+        if (std::count(rows.begin(), rows.end(), frames[k]) > 0) painter.add(frames[k], k);
+    return painter.take();
+}
+
+void film_hard_case(const std::string& path, const HardScene& scene, const std::vector<int>& frames,
+                    const std::vector<HardStrip>& strips) {
+    RowPainter painter(scene, strips);
+    std::unique_ptr<VideoWriter> video;
+    for (size_t k = 0; k < frames.size(); ++k) {
+        painter.add(frames[k], k);
+        const Image image = painter.take();
+        VideoSettings settings;
+        settings.fps = 1.0 / scene.dt();
+        if (!video)
+            video = std::make_unique<VideoWriter>(path, image.width(), image.height(), settings);
+        video->add(image);
     }
-    MontageSettings layout;
-    layout.columns = static_cast<int>(strips.size());
-    layout.caption_height = 20;
-    return montage(panels, captions, layout);
+    if (video) video->close();
 }
 
 }  // namespace cloth
