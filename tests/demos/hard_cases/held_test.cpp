@@ -30,7 +30,7 @@ HardRun run(const HardCase& hard, const HardSceneParts& parts, int frames,
     omp_set_num_threads(threads);
     const HardScene scene(parts, frames);
     const auto solver = make_solver(stepper, scene, SolverSettings{"", threads, nullptr});
-    return run_hard_case(hard, scene, *solver, {}, [](int) {});
+    return run_hard_case(hard, scene, *solver, picture_frames(frames), [](int) {});
 }
 
 bool same_bits(const Points& a, const Points& b) {
