@@ -55,7 +55,7 @@ class SpoilingStepper : public Stepper {
 
 HardRun run(const HardCase& hard, SpoilingStepper stepper, HardSceneParts parts) {
     const HardScene scene(std::move(parts), hard.frames);
-    return run_hard_case(hard, scene, stepper, {}, [](int) {});
+    return run_hard_case(hard, scene, stepper, picture_frames(scene.frames()), [](int) {});
 }
 HardRun run(const HardCase& hard, SpoilingStepper stepper) {
     return run(hard, std::move(stepper), hard.parts());
