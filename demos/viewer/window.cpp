@@ -1,0 +1,349 @@
+#include "demos/viewer/window.h"
+
+#include <epoxy/gl.h>
+// after epoxy, which has OpenGL's names
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "demos/compare/figure_meshes.h"
+#include "demos/viewer/drawer.h"
+#include "demos/viewer/orbit_camera.h"
+#include "demos/viewer/panel.h"
+#include "demos/viewer/pick.h"
+#include "demos/viewer/step_thread.h"
+#include "demos/viewer/viewer_scene.h"
+
+namespace cloth {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double picture_time = 1.0 / 60.0;  // (s)
+
+std::string& glfw_problem() {
+    static std::string problem;
+    return problem;
+}
+
+std::runtime_error window_error(const std::string& remedy) {
+    const std::string& problem = glfw_problem();
+    return std::runtime_error("viewer: no window can be opened" +
+                              (problem.empty() ? "" : " (" + problem + ")") +
+                              ". Remedy: " + remedy);
+}
+
+/// GLFW, a window with OpenGL 3.3, and ImGui in it.
+class Window {
+ public:
+    Window(int width, int height) {
+        glfwSetErrorCallback([](int, const char* text) { glfw_problem() = text; });
+        if (!glfwInit())
+            throw window_error(
+                "run it on a desktop, or over `ssh -X`; without a screen, for --frames and "
+                "--screenshot: apt-get install xvfb xauth, and put `xvfb-run -a -s \"-screen 0 "
+                "1280x800x24\"` before the command");
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+        glfwWindowHint(GLFW_SAMPLES, 4);
+        m_window = glfwCreateWindow(width, height, "viewer", nullptr, nullptr);
+        if (!m_window) {
+            glfwTerminate();
+            throw window_error(
+                "install a driver for OpenGL 3.3, such as Debian's libgl1-mesa-dri, or set "
+                "LIBGL_ALWAYS_SOFTWARE=1");
+        }
+        glfwMakeContextCurrent(m_window);
+        glfwSwapInterval(0);  // the loop keeps to picture_time by itself
+        start_imgui();
+    }
+    ~Window() {
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext();
+        glfwDestroyWindow(m_window);
+        glfwTerminate();
+    }
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    bool is_closed() const { return glfwWindowShouldClose(m_window) != 0; }
+    void close() { glfwSetWindowShouldClose(m_window, GLFW_TRUE); }
+    void set_title(const std::string& title) { glfwSetWindowTitle(m_window, title.c_str()); }
+
+    void begin_picture() {
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        glfwGetFramebufferSize(m_window, &picture_width, &picture_height);
+        picture_width = std::max(picture_width, 1);
+        picture_height = std::max(picture_height, 1);
+    }
+    void draw_panel() {
+        ImGui::Render();
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    }
+    void show() { glfwSwapBuffers(m_window); }
+
+    int picture_width = 1, picture_height = 1;  ///< (pixels)
+
+ private:
+    void start_imgui() {
+        IMGUI_CHECKVERSION();
+        ImGui::CreateContext();
+        ImGui::StyleColorsDark();
+        ImGui::GetStyle().WindowRounding = 0.0f;
+        ImGui::GetStyle().FrameRounding = 3.0f;
+        ImGuiIO& io = ImGui::GetIO();
+        io.IniFilename = nullptr;  // it would write into the working folder
+        const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+        if (std::filesystem::exists(font)) io.Fonts->AddFontFromFileTTF(font, 14.0f);
+        ImGui_ImplGlfw_InitForOpenGL(m_window, true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+
+    GLFWwindow* m_window = nullptr;
+};
+
+/// The loop: it shows what the scene has done last, while a thread makes the next step.
+class Viewer {
+ public:
+    Viewer(const ViewerOptions& options, Window& window)
+        : m_options(options),
+          m_window(window),
+          m_scene(options.scene, options.threads),
+          m_controls(first_controls(options, m_scene)),
+          m_panel(m_controls),
+          m_shown(m_scene.frame()),
+          m_body_faces(std::make_shared<const Faces>(m_scene.body_faces())) {
+        for (const Faces& part : m_scene.parts())
+            m_part_faces.push_back(std::make_shared<const Faces>(part));
+        m_panel.view.wireframe = options.wireframe;
+        m_ground_height = m_shown.skin.col(1).minCoeff();
+        window.set_title("viewer: " + options.scene.garment);
+    }
+
+    void run() {
+        auto next_picture = Clock::now();
+        while (!m_window.is_closed()) {
+            take_step();
+            start_step();
+            glfwPollEvents();
+            draw();
+            if (m_options.frames > 0 && m_shown.steps >= m_options.frames) break;
+            if (m_options.frames > 0) continue;
+            next_picture = std::max(next_picture + ticks(picture_time), Clock::now());
+            wait_until(next_picture);
+        }
+        m_thread.wait();
+        save_picture();
+    }
+
+ private:
+    static Clock::duration ticks(double seconds) {
+        return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    }
+
+    static ViewerControls first_controls(const ViewerOptions& options, const ViewerScene& scene) {
+        ViewerControls controls = scene.controls();
+        controls.playing = !options.paused;
+        controls.wind.speed = options.wind;
+        if (options.colours == "stretch") controls.colours = ColourMode::stretch;
+        if (options.colours == "contact") controls.colours = ColourMode::contact;
+        return controls;
+    }
+
+    static void wait_until(Clock::time_point time) {
+        for (;;) {
+            const double left = std::chrono::duration<double>(time - Clock::now()).count();
+            if (left <= 0.0) return;
+            glfwWaitEventsTimeout(left);
+        }
+    }
+
+    void take_step() {
+        if (m_options.frames > 0) m_thread.wait();
+        if (!m_thread.is_idle() || !m_new) return;
+        m_new = false;
+        const ViewerFrame& frame = m_scene.frame();
+        if (frame.steps > m_shown.steps) m_panel.add_time(frame.ms);
+        if (m_panel.view.follow) {
+            Vec3 way = (frame.skin.colwise().mean() - m_shown.skin.colwise().mean()).transpose();
+            way.y() = 0.0;
+            m_camera.move(way);
+        }
+        m_shown = frame;
+        m_load = true;
+    }
+
+    /// Steps keep to the clock, or come one after the other where they take longer.
+    void start_step() {
+        if (m_new || !m_thread.is_idle()) return;
+        const auto now = Clock::now();
+        const bool due = m_controls.playing && (now >= m_next_step || m_options.frames > 0);
+        if (!due && m_controls == m_handed) return;
+        ViewerControls controls = m_controls;
+        controls.playing = due;
+        if (due) m_next_step = std::max(m_next_step + ticks(m_scene.frame_time()), now);
+        m_handed = m_controls;
+        m_new = true;
+        m_thread.start([this, controls] { m_scene.advance(controls); });
+    }
+
+    void draw() {
+        m_window.begin_picture();
+        m_panel.draw(m_controls, m_shown, m_scene.frames());
+        const double shift = 0.5 * static_cast<double>(Panel::width) / io().DisplaySize.x;
+        const double aspect = static_cast<double>(m_window.picture_width) / m_window.picture_height;
+        if (m_first || m_panel.view.reset_camera)
+            m_camera.frame(m_shown.skin, aspect * (1.0 - 2.0 * shift));
+        m_first = false;
+        use_keys();
+        m_view = m_camera.camera(shift, aspect);
+        use_mouse();
+        m_view = m_camera.camera(shift, aspect);
+        draw_hand();
+        if (m_load || m_panel.view.shadows != m_shadows || m_panel.view.body != m_body) load();
+        m_drawer.draw(m_view, m_window.picture_width, m_window.picture_height,
+                      m_panel.view.wireframe);
+        m_window.draw_panel();
+        if (is_last_picture())
+            m_picture = drawn_picture(m_window.picture_width, m_window.picture_height);
+        m_window.show();
+    }
+
+    bool is_last_picture() const {
+        if (m_options.screenshot.empty()) return false;
+        return m_window.is_closed() || (m_options.frames > 0 && m_shown.steps >= m_options.frames);
+    }
+
+    void load() {
+        m_load = false;
+        m_shadows = m_panel.view.shadows;
+        m_body = m_panel.view.body;
+        Scene scene;
+        std::vector<Points> colours;
+        for (size_t part = 0; part < m_part_faces.size(); ++part) {
+            scene.meshes.push_back(garment_mesh(m_shown.cloth, m_part_faces[part], part + 1));
+            colours.push_back(m_shown.colours);
+        }
+        if (m_body) scene.meshes.push_back(skin_mesh(m_shown.skin, m_body_faces));
+        scene.ground.centre = m_shown.skin.colwise().mean().transpose();
+        scene.ground.height = m_ground_height;
+        scene.lights.shadows = m_shadows;
+        m_drawer.load(scene, colours);
+    }
+
+    static ImGuiIO& io() { return ImGui::GetIO(); }
+
+    void use_keys() {
+        if (io().WantTextInput) return;
+        if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) m_controls.playing = !m_controls.playing;
+        if (ImGui::IsKeyPressed(GLFW_KEY_R, false)) ++m_controls.restarts;
+        if (ImGui::IsKeyPressed(GLFW_KEY_W, false))
+            m_panel.view.wireframe = !m_panel.view.wireframe;
+        if (ImGui::IsKeyPressed(GLFW_KEY_C, false))
+            m_controls.colours =
+                static_cast<ColourMode>((static_cast<int>(m_controls.colours) + 1) % 3);
+        if (ImGui::IsKeyPressed(GLFW_KEY_N)) {
+            m_controls.playing = false;
+            ++m_controls.single_steps;
+        }
+        if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) m_window.close();
+    }
+
+    /// The left button drags cloth where it is pressed on cloth, and turns the camera elsewhere.
+    void use_mouse() {
+        const Ray ray = ray_through(
+            m_view, static_cast<double>(io().MousePos.x), static_cast<double>(io().MousePos.y),
+            static_cast<int>(io().DisplaySize.x), static_cast<int>(io().DisplaySize.y));
+        if (!io().WantCaptureMouse) {
+            if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) grip(ray);
+            m_camera.zoom(static_cast<double>(io().MouseWheel));
+            move_camera();
+        }
+        if (!m_controls.pull) return;
+        if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+            m_controls.pull.reset();
+            return;
+        }
+        m_controls.pull->target = on_picture_plane(ray, m_view, m_grip);
+    }
+
+    void grip(const Ray& ray) {
+        const Faces none(0, 3);
+        const auto vertex = shown_vertex(ray, m_shown.cloth, m_scene.garment_faces(), m_shown.skin,
+                                         m_panel.view.body ? *m_body_faces : none);
+        if (!vertex) return;
+        m_grip = m_shown.cloth.row(*vertex).transpose();
+        m_controls.pull = ViewerControls::Pull{*vertex, m_grip};
+    }
+
+    void move_camera() {
+        const double right = static_cast<double>(io().MouseDelta.x / io().DisplaySize.y);
+        const double down = static_cast<double>(io().MouseDelta.y / io().DisplaySize.y);
+        const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left) && !m_controls.pull;
+        if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io().KeyShift))
+            m_camera.pan(right, down);
+        else if (left || ImGui::IsMouseDown(ImGuiMouseButton_Right))
+            m_camera.orbit(right, down);
+    }
+
+    void draw_hand() {
+        if (!m_controls.pull) return;
+        const auto place = [&](const Vec3& point) {
+            const PixelPosition pixel = project(m_view, point, static_cast<int>(io().DisplaySize.x),
+                                                static_cast<int>(io().DisplaySize.y));
+            return ImVec2(static_cast<float>(pixel.x), static_cast<float>(pixel.y));
+        };
+        ImDrawList* list = ImGui::GetBackgroundDrawList();
+        const ImVec2 from = place(m_shown.cloth.row(m_controls.pull->vertex).transpose());
+        const ImVec2 to = place(m_controls.pull->target);
+        list->AddLine(from, to, IM_COL32(30, 30, 34, 220), 2.0f);
+        list->AddCircleFilled(from, 4.0f, IM_COL32(255, 214, 120, 255));
+        list->AddCircle(to, 6.0f, IM_COL32(255, 214, 120, 255), 0, 2.0f);
+    }
+
+    void save_picture() const {
+        if (m_options.screenshot.empty() || m_picture.empty()) return;
+        write_png(m_options.screenshot, m_picture);
+    }
+
+    ViewerOptions m_options;
+    Window& m_window;
+    ViewerScene m_scene;  ///< the thread's, while that is not idle
+    ViewerControls m_controls, m_handed;
+    Panel m_panel;
+    ViewerFrame m_shown;
+    std::shared_ptr<const Faces> m_body_faces;
+    std::vector<std::shared_ptr<const Faces>> m_part_faces;
+    double m_ground_height = 0.0;
+    Drawer m_drawer;
+    OrbitCamera m_camera;
+    Camera m_view;
+    Vec3 m_grip = Vec3::Zero();  ///< where the cloth was gripped (m)
+    bool m_first = true, m_load = true, m_shadows = true, m_body = true;
+    bool m_new = false;  ///< the thread has something that is not shown yet
+    Clock::time_point m_next_step = Clock::now();
+    Image m_picture;
+    StepThread m_thread;  ///< last: it ends before what it uses
+};
+
+}  // namespace
+
+void run_viewer(const ViewerOptions& options) {
+    Window window(options.width, options.height);
+    Viewer viewer(options, window);
+    viewer.run();
+}
+
+}  // namespace cloth
