@@ -42,7 +42,9 @@ ViewerOptions parse_viewer_options(const std::vector<std::string>& arguments) {
     add_start(app, options);
     add_window(app, options);
     app.footer(
-        "Keys: space plays and pauses, N makes one step, R restarts; the panel has the rest.");
+        "Keys: space plays and pauses, N makes one step, R restarts, W shows edges, C changes\n"
+        "the colours, Escape ends. The left mouse button drags cloth, or turns the camera where\n"
+        "there is none; the middle one, or shift, moves it; the wheel brings it nearer.");
     parse(app, arguments);
     finish_scene(options.scene);
     body_shape_named(options.scene.shape);

@@ -207,7 +207,8 @@ void Panel::draw_report(const ViewerFrame& frame) const {
     row("depth", text_of("%.1f mm inside", 1e3 * report.max_penetration),
         report.max_penetration > 1e-3);
     row("in ignored limbs", std::to_string(report.vertices_in_ignored_limbs) + " vertices");
-    row("tangles", std::to_string(report.tangles), report.tangles > 0);
+    row("tangles", frame.counts_tangles ? std::to_string(report.tangles) : "counted in layers only",
+        report.tangles > 0);
     if (report.tunnelled) row("tunnelled", text_of("%.1f mm thick", 1e3 * *report.tunnelled), true);
     if (!frame.problem.empty()) row("problem", frame.problem, true);
 }

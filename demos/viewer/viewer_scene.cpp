@@ -136,6 +136,7 @@ void ViewerScene::restart() {
     m_frame = {};
     m_frame.frame = -m_base.cloth->lead_in_frames();
     m_frame.solver = m_free->stepper->name();
+    m_frame.counts_tangles = m_base.cloth->self_contact().on();
     const double time = motion_time(m_frame.frame);
     m_boundary = m_base.cloth->boundary(time, time);
 }

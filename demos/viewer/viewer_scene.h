@@ -47,6 +47,7 @@ struct ViewerFrame {
     StepReport report;   ///< of the last step
     double ms = 0.0;     ///< wall time of the last step
     StretchStatistics stretch;
+    bool counts_tangles = false;  ///< StepReport::tangles is counted: the garments are layers
     bool is_pulled = false;
     std::string problem;  ///< what is wrong with the cloth, or empty
     std::string refusal;  ///< why a control was refused, or empty

@@ -13,6 +13,8 @@
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "demos/compare/figure_meshes.h"
 #include "demos/viewer/drawer.h"
@@ -63,6 +65,12 @@ class Window {
                 "LIBGL_ALWAYS_SOFTWARE=1");
         }
         glfwMakeContextCurrent(m_window);
+        glfwSetWindowUserPointer(m_window, this);
+        // ImGui, which calls this one too, would miss keys that are pressed only between pictures.
+        glfwSetKeyCallback(m_window, [](GLFWwindow* window, int key, int, int action, int) {
+            if (action == GLFW_RELEASE) return;
+            static_cast<Window*>(glfwGetWindowUserPointer(window))->m_keys.push_back(key);
+        });
         glfwSwapInterval(0);  // the loop keeps to picture_time by itself
         start_imgui();
     }
@@ -93,6 +101,8 @@ class Window {
         ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     }
     void show() { glfwSwapBuffers(m_window); }
+    /// Keys that were pressed since the last call, in that order.
+    std::vector<int> take_keys() { return std::exchange(m_keys, {}); }
 
     int picture_width = 1, picture_height = 1;  ///< (pixels)
 
@@ -112,6 +122,7 @@ class Window {
     }
 
     GLFWwindow* m_window = nullptr;
+    std::vector<int> m_keys;
 };
 
 /// The loop: it shows what the scene has done last, while a thread makes the next step.
@@ -129,7 +140,7 @@ class Viewer {
             m_part_faces.push_back(std::make_shared<const Faces>(part));
         m_panel.view.wireframe = options.wireframe;
         m_ground_height = m_shown.skin.col(1).minCoeff();
-        window.set_title("viewer: " + options.scene.garment);
+        show_title();
     }
 
     void run() {
@@ -181,8 +192,14 @@ class Viewer {
             way.y() = 0.0;
             m_camera.move(way);
         }
+        const bool other_solver = frame.solver != m_shown.solver;
         m_shown = frame;
         m_load = true;
+        if (other_solver) show_title();
+    }
+
+    void show_title() {
+        m_window.set_title("viewer: " + m_options.scene.garment + ", " + m_shown.solver);
     }
 
     /// Steps keep to the clock, or come one after the other where they take longer.
@@ -246,19 +263,35 @@ class Viewer {
     static ImGuiIO& io() { return ImGui::GetIO(); }
 
     void use_keys() {
-        if (io().WantTextInput) return;
-        if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) m_controls.playing = !m_controls.playing;
-        if (ImGui::IsKeyPressed(GLFW_KEY_R, false)) ++m_controls.restarts;
-        if (ImGui::IsKeyPressed(GLFW_KEY_W, false))
-            m_panel.view.wireframe = !m_panel.view.wireframe;
-        if (ImGui::IsKeyPressed(GLFW_KEY_C, false))
-            m_controls.colours =
-                static_cast<ColourMode>((static_cast<int>(m_controls.colours) + 1) % 3);
-        if (ImGui::IsKeyPressed(GLFW_KEY_N)) {
-            m_controls.playing = false;
-            ++m_controls.single_steps;
+        for (const int key : m_window.take_keys())
+            if (!io().WantTextInput) use_key(key);
+    }
+
+    void use_key(int key) {
+        switch (key) {
+            case GLFW_KEY_SPACE:
+                m_controls.playing = !m_controls.playing;
+                break;
+            case GLFW_KEY_N:
+                m_controls.playing = false;
+                ++m_controls.single_steps;
+                break;
+            case GLFW_KEY_R:
+                ++m_controls.restarts;
+                break;
+            case GLFW_KEY_W:
+                m_panel.view.wireframe = !m_panel.view.wireframe;
+                break;
+            case GLFW_KEY_C:
+                m_controls.colours =
+                    static_cast<ColourMode>((static_cast<int>(m_controls.colours) + 1) % 3);
+                break;
+            case GLFW_KEY_ESCAPE:
+                m_window.close();
+                break;
+            default:
+                break;
         }
-        if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) m_window.close();
     }
 
     /// The left button drags cloth where it is pressed on cloth, and turns the camera elsewhere.
