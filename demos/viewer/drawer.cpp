@@ -54,6 +54,7 @@ struct Drawer::Implementation {
                              plain_fragment_source(shaders::kEmptyFragment)};
     GlProgram line_program{"line", vertex_source(false), plain_fragment_source(line_fragment)};
     GlShadowMap shadow_map{shadow_size};
+    GlSmoothFrame frame;
     Scene scene;
     std::vector<std::unique_ptr<GlMesh>> meshes;
     GlMesh ground;
@@ -163,18 +164,20 @@ void Drawer::load(const Scene& scene, const std::vector<Points>& colours) {
 }
 
 void Drawer::draw(const Camera& camera, int width, int height, bool wireframe) {
-    const Implementation& parts = *m_implementation;
+    Implementation& parts = *m_implementation;
     const double aspect = static_cast<double>(width) / height;
+    parts.shadow_map.bind();  // again: who draws the panel binds textures of its own
+    parts.frame.begin(width, height);
     glViewport(0, 0, width, height);
     const Rgb clear = parts.scene.background;
     glClearColor(clear.r / 255.0f, clear.g / 255.0f, clear.b / 255.0f, 1.0f);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
     glEnable(GL_MULTISAMPLE);
-    parts.shadow_map.end();  // binds the map again: who draws the panel binds textures of its own
     parts.draw_meshes(camera, aspect);
     if (wireframe) parts.draw_lines(camera, aspect);
     if (parts.scene.ground.visible) parts.draw_ground(camera, aspect);
+    parts.frame.end();
 }
 
 Image drawn_picture(int width, int height) {

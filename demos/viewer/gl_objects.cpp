@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace cloth {
@@ -145,8 +146,50 @@ void GlShadowMap::begin() const {
 void GlShadowMap::end() const {
     glDisable(GL_POLYGON_OFFSET_FILL);
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
+void GlShadowMap::bind() const {
     glActiveTexture(GL_TEXTURE0);
     glBindTexture(GL_TEXTURE_2D, m_texture);
+}
+
+GlSmoothFrame::GlSmoothFrame() {
+    glGenFramebuffers(1, &m_frame);
+    glGenRenderbuffers(static_cast<GLsizei>(m_buffers.size()), m_buffers.data());
+}
+
+GlSmoothFrame::~GlSmoothFrame() {
+    glDeleteRenderbuffers(static_cast<GLsizei>(m_buffers.size()), m_buffers.data());
+    glDeleteFramebuffers(1, &m_frame);
+}
+
+void GlSmoothFrame::begin(int width, int height) {
+    glBindFramebuffer(GL_FRAMEBUFFER, m_frame);
+    if (width == m_width && height == m_height) return;
+    m_width = width;
+    m_height = height;
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_SAMPLES, &most);
+    const GLint samples = std::min(most, 4);
+    const auto attach = [&](GLuint buffer, GLenum format, GLenum place) {
+        glBindRenderbuffer(GL_RENDERBUFFER, buffer);
+        glRenderbufferStorageMultisample(GL_RENDERBUFFER, samples, format, width, height);
+        glFramebufferRenderbuffer(GL_FRAMEBUFFER, place, GL_RENDERBUFFER, buffer);
+    };
+    attach(m_buffers[0], GL_RGBA8, GL_COLOR_ATTACHMENT0);
+    attach(m_buffers[1], GL_DEPTH_COMPONENT24, GL_DEPTH_ATTACHMENT);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("OpenGL: there is no room for a picture of " +
+                                 std::to_string(width) + " x " + std::to_string(height) +
+                                 " pixels");
+}
+
+void GlSmoothFrame::end() const {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, m_frame);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    glBlitFramebuffer(0, 0, m_width, m_height, 0, 0, m_width, m_height, GL_COLOR_BUFFER_BIT,
+                      GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
 }  // namespace cloth

@@ -67,10 +67,30 @@ class GlShadowMap {
 
     int size() const { return m_size; }
     void begin() const;  ///< what is drawn from now on goes into the map
-    void end() const;    ///< and again into the window; the map is bound as texture
+    void end() const;    ///< and again into the window
+    void bind() const;   ///< as the texture of what is drawn
+
  private:
     int m_size;
     unsigned m_texture = 0, m_frame = 0;
+};
+
+/// A picture of several samples per pixel, which smooths edges. The window's own would do, but some
+/// drivers show one of its samples alone.
+class GlSmoothFrame {
+ public:
+    GlSmoothFrame();
+    ~GlSmoothFrame();
+    GlSmoothFrame(const GlSmoothFrame&) = delete;
+    GlSmoothFrame& operator=(const GlSmoothFrame&) = delete;
+
+    void begin(int width, int height);  ///< what is drawn from now on goes into it
+    void end() const;                   ///< into the window it goes, and what is drawn next
+
+ private:
+    unsigned m_frame = 0;
+    std::array<unsigned, 2> m_buffers{};  ///< colours, depth
+    int m_width = 0, m_height = 0;
 };
 
 }  // namespace cloth

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "data/files/garment_assets.h"
+#include "demos/compare/body_named.h"
+
 namespace cloth {
 namespace {
 
@@ -47,6 +50,12 @@ void row(const char* name, const std::string& value, bool alarming = false) {
         ImGui::TextUnformatted(value.c_str());
 }
 
+void warn(const std::string& text) {
+    ImGui::PushTextWrapPos();
+    ImGui::TextColored(warning, "%s", text.c_str());
+    ImGui::PopTextWrapPos();
+}
+
 void legend(const ColourScale& scale) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -75,14 +84,40 @@ void legend(const ColourScale& scale) {
     ImGui::Dummy(ImVec2(width, height + ImGui::GetTextLineHeightWithSpacing()));
 }
 
+/// @return  whether another one was chosen
+bool choose(const char* label, const std::vector<std::string>& names, std::string& chosen) {
+    bool changed = false;
+    if (!ImGui::BeginCombo(label, chosen.c_str(), ImGuiComboFlags_HeightLarge)) return false;
+    for (const std::string& name : names) {
+        if (!ImGui::Selectable(name.c_str(), name == chosen) || name == chosen) continue;
+        chosen = name;
+        changed = true;
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+/// The names, and first the one that may be none of them.
+std::vector<std::string> with(const std::string& name, std::vector<std::string> names) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        names.insert(names.begin(), name);
+    return names;
+}
+
 bool is_open(const char* title) {
     return ImGui::CollapsingHeader(title, ImGuiTreeNodeFlags_DefaultOpen);
 }
 
 }  // namespace
 
-Panel::Panel(const ViewerControls& start)
-    : m_kinds(solver_kinds()), m_choice(SolverChoice::of(start.solver)), m_fabric(start.fabric) {
+Panel::Panel(const SceneOptions& scene, const ViewerControls& start)
+    : m_scene(scene),
+      m_garments(with(scene.garment, with("tshirt_1000+pants_1000", garment_names()))),
+      m_bodies(with(scene.shape, body_names())),
+      m_motions(with(scene.motion, {"01_01", "01_03", "Boxing_Toes"})),
+      m_kinds(solver_kinds()),
+      m_choice(SolverChoice::of(start.solver)),
+      m_fabric(start.fabric) {
 }
 
 void Panel::add_time(double ms) {
@@ -100,6 +135,7 @@ void Panel::draw(ViewerControls& controls, const ViewerFrame& frame, int frames)
                      ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
     ImGui::PushItemWidth(165.0f);
     draw_playback(controls, frame, frames);
+    if (m_scene.character.character.empty() && is_open("Who wears what")) draw_scene();
     if (is_open("Solver")) draw_solver(controls, frame);
     if (is_open("Fabric")) draw_fabric(controls);
     if (is_open("Wind and hand")) draw_world(controls);
@@ -110,15 +146,15 @@ void Panel::draw(ViewerControls& controls, const ViewerFrame& frame, int frames)
 }
 
 void Panel::draw_playback(ViewerControls& controls, const ViewerFrame& frame, int frames) {
-    if (ImGui::Button(controls.playing ? "Pause" : "Play", ImVec2(90, 0)))
+    if (ImGui::Button(controls.playing ? "Pause" : "Play", ImVec2(86, 0)))
         controls.playing = !controls.playing;
     ImGui::SameLine();
-    if (ImGui::Button("Step", ImVec2(90, 0))) {
+    if (ImGui::Button("Step", ImVec2(86, 0))) {
         controls.playing = false;
         ++controls.single_steps;
     }
     ImGui::SameLine();
-    if (ImGui::Button("Restart", ImVec2(90, 0))) ++controls.restarts;
+    if (ImGui::Button("Restart", ImVec2(86, 0))) ++controls.restarts;
     ImGui::Checkbox("body moves", &controls.body_moves);
     ImGui::SameLine(125.0f);
     if (frame.frame < 0)
@@ -127,27 +163,23 @@ void Panel::draw_playback(ViewerControls& controls, const ViewerFrame& frame, in
         ImGui::TextDisabled("frame %d of %d", frame.frame, frames);
 }
 
+void Panel::draw_scene() {
+    bool changed = choose("garment", m_garments, m_scene.garment);
+    changed |= choose("body", m_bodies, m_scene.shape);
+    changed |= choose("motion", m_motions, m_scene.motion);
+    if (changed) wanted = m_scene;
+    if (!scene_state.empty()) warn(scene_state);
+}
+
 void Panel::draw_solver(ViewerControls& controls, const ViewerFrame& frame) {
-    bool changed = false;
-    if (ImGui::BeginCombo("solver", m_choice.kind.c_str(), ImGuiComboFlags_HeightLarge)) {
-        for (const std::string& kind : m_kinds)
-            if (ImGui::Selectable(kind.c_str(), kind == m_choice.kind)) {
-                m_choice.kind = kind;
-                changed = true;
-            }
-        ImGui::EndCombo();
-    }
+    bool changed = choose("solver", m_kinds, m_choice.kind);
     if (m_choice.has_number()) {
         ImGui::SliderInt(m_choice.kind == "xpbd-N" ? "N sub-steps" : "K iterations", &m_choice.k, 1,
                          100, "%d", ImGuiSliderFlags_AlwaysClamp);
         changed |= ImGui::IsItemDeactivatedAfterEdit();
     }
     if (changed) controls.solver = m_choice.name();
-    if (!frame.refusal.empty()) {
-        ImGui::PushTextWrapPos();
-        ImGui::TextColored(warning, "%s", frame.refusal.c_str());
-        ImGui::PopTextWrapPos();
-    }
+    if (!frame.refusal.empty()) warn(frame.refusal);
 }
 
 void Panel::draw_fabric(ViewerControls& controls) {
@@ -194,7 +226,8 @@ void Panel::draw_report(const ViewerFrame& frame) const {
         const float highest = *std::max_element(m_times.begin(), m_times.end());
         const std::string caption = text_of("%.1f ms", frame.ms);
         ImGui::PlotLines("##times", m_times.data(), static_cast<int>(m_times.size()), 0,
-                         caption.c_str(), 0.0f, 1.1f * highest, ImVec2(width - 24.0f, 52.0f));
+                         caption.c_str(), 0.0f, 1.1f * highest,
+                         ImVec2(ImGui::GetContentRegionAvail().x, 48.0f));
         row("graph", text_of("time per step, 0 to %.0f ms", 1.1 * static_cast<double>(highest)));
     }
     row("solver", frame.solver);

@@ -56,7 +56,6 @@ class Window {
         glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
         glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-        glfwWindowHint(GLFW_SAMPLES, 4);
         m_window = glfwCreateWindow(width, height, "viewer", nullptr, nullptr);
         if (!m_window) {
             glfwTerminate();
@@ -111,8 +110,11 @@ class Window {
         IMGUI_CHECKVERSION();
         ImGui::CreateContext();
         ImGui::StyleColorsDark();
-        ImGui::GetStyle().WindowRounding = 0.0f;
-        ImGui::GetStyle().FrameRounding = 3.0f;
+        ImGuiStyle& style = ImGui::GetStyle();
+        style.WindowRounding = 0.0f;
+        style.FrameRounding = 3.0f;
+        style.FramePadding.y = 2.0f;  // so that the panel fits into 800 pixels
+        style.ItemSpacing.y = 3.0f;
         ImGuiIO& io = ImGui::GetIO();
         io.IniFilename = nullptr;  // it would write into the working folder
         const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
@@ -131,16 +133,11 @@ class Viewer {
     Viewer(const ViewerOptions& options, Window& window)
         : m_options(options),
           m_window(window),
-          m_scene(options.scene, options.threads),
-          m_controls(first_controls(options, m_scene)),
-          m_panel(m_controls),
-          m_shown(m_scene.frame()),
-          m_body_faces(std::make_shared<const Faces>(m_scene.body_faces())) {
-        for (const Faces& part : m_scene.parts())
-            m_part_faces.push_back(std::make_shared<const Faces>(part));
+          m_scene(std::make_unique<ViewerScene>(options.scene, options.threads)),
+          m_controls(first_controls(options, *m_scene)),
+          m_panel(options.scene, m_controls) {
         m_panel.view.wireframe = options.wireframe;
-        m_ground_height = m_shown.skin.col(1).minCoeff();
-        show_title();
+        show_scene();
     }
 
     void run() {
@@ -173,6 +170,44 @@ class Viewer {
         return controls;
     }
 
+    /// What is shown of a new scene.
+    void show_scene() {
+        m_shown = m_scene->frame();
+        m_body_faces = std::make_shared<const Faces>(m_scene->body_faces());
+        m_part_faces.clear();
+        for (const Faces& part : m_scene->parts())
+            m_part_faces.push_back(std::make_shared<const Faces>(part));
+        m_ground_height = m_shown.skin.col(1).minCoeff();
+        m_panel.clear_times();
+        m_load = true;
+        show_title();
+    }
+
+    /// The user goes on looking at the old scene until the new one is there.
+    void make_scene(SceneOptions options) {
+        options.solver = m_controls.solver;
+        m_panel.scene_state = "is being made ...";
+        m_new = m_makes_scene = true;
+        m_thread.start([this, options] {
+            try {
+                m_next_scene = std::make_unique<ViewerScene>(options, m_options.threads);
+                m_options.scene = options;
+                m_refusal.clear();
+            } catch (const std::exception& error) {
+                m_refusal = error.what();
+            }
+        });
+    }
+
+    void take_scene() {
+        m_panel.scene_state = m_refusal;
+        if (!m_next_scene) return;
+        m_scene = std::move(m_next_scene);
+        m_controls.restarts = m_controls.single_steps = 0;
+        m_controls.pull.reset();
+        show_scene();
+    }
+
     static void wait_until(Clock::time_point time) {
         for (;;) {
             const double left = std::chrono::duration<double>(time - Clock::now()).count();
@@ -185,7 +220,11 @@ class Viewer {
         if (m_options.frames > 0) m_thread.wait();
         if (!m_thread.is_idle() || !m_new) return;
         m_new = false;
-        const ViewerFrame& frame = m_scene.frame();
+        if (m_makes_scene) {
+            m_makes_scene = false;
+            return take_scene();
+        }
+        const ViewerFrame& frame = m_scene->frame();
         if (frame.steps > m_shown.steps) m_panel.add_time(frame.ms);
         if (m_panel.view.follow) {
             Vec3 way = (frame.skin.colwise().mean() - m_shown.skin.colwise().mean()).transpose();
@@ -205,20 +244,24 @@ class Viewer {
     /// Steps keep to the clock, or come one after the other where they take longer.
     void start_step() {
         if (m_new || !m_thread.is_idle()) return;
+        if (m_panel.wanted) {
+            make_scene(*std::exchange(m_panel.wanted, std::nullopt));
+            return;
+        }
         const auto now = Clock::now();
         const bool due = m_controls.playing && (now >= m_next_step || m_options.frames > 0);
         if (!due && m_controls == m_handed) return;
         ViewerControls controls = m_controls;
         controls.playing = due;
-        if (due) m_next_step = std::max(m_next_step + ticks(m_scene.frame_time()), now);
+        if (due) m_next_step = std::max(m_next_step + ticks(m_scene->frame_time()), now);
         m_handed = m_controls;
         m_new = true;
-        m_thread.start([this, controls] { m_scene.advance(controls); });
+        m_thread.start([this, controls] { m_scene->advance(controls); });
     }
 
     void draw() {
         m_window.begin_picture();
-        m_panel.draw(m_controls, m_shown, m_scene.frames());
+        m_panel.draw(m_controls, m_shown, m_scene->frames());
         const double shift = 0.5 * static_cast<double>(Panel::width) / io().DisplaySize.x;
         const double aspect = static_cast<double>(m_window.picture_width) / m_window.picture_height;
         if (m_first || m_panel.view.reset_camera)
@@ -254,6 +297,9 @@ class Viewer {
             colours.push_back(m_shown.colours);
         }
         if (m_body) scene.meshes.push_back(skin_mesh(m_shown.skin, m_body_faces));
+        // Flat faces of cloth cut round skin. Where contact is looked at, that is shown.
+        if (m_body && m_controls.colours != ColourMode::contact)
+            scene.meshes.back().depth_offset = 2e-3;
         scene.ground.centre = m_shown.skin.colwise().mean().transpose();
         scene.ground.height = m_ground_height;
         scene.lights.shadows = m_shadows;
@@ -314,7 +360,7 @@ class Viewer {
 
     void grip(const Ray& ray) {
         const Faces none(0, 3);
-        const auto vertex = shown_vertex(ray, m_shown.cloth, m_scene.garment_faces(), m_shown.skin,
+        const auto vertex = shown_vertex(ray, m_shown.cloth, m_scene->garment_faces(), m_shown.skin,
                                          m_panel.view.body ? *m_body_faces : none);
         if (!vertex) return;
         m_grip = m_shown.cloth.row(*vertex).transpose();
@@ -353,7 +399,9 @@ class Viewer {
 
     ViewerOptions m_options;
     Window& m_window;
-    ViewerScene m_scene;  ///< the thread's, while that is not idle
+    std::unique_ptr<ViewerScene> m_scene;  ///< the thread's, while that is not idle
+    std::unique_ptr<ViewerScene> m_next_scene;
+    std::string m_refusal;  ///< why there is no next scene
     ViewerControls m_controls, m_handed;
     Panel m_panel;
     ViewerFrame m_shown;
@@ -365,7 +413,8 @@ class Viewer {
     Camera m_view;
     Vec3 m_grip = Vec3::Zero();  ///< where the cloth was gripped (m)
     bool m_first = true, m_load = true, m_shadows = true, m_body = true;
-    bool m_new = false;  ///< the thread has something that is not shown yet
+    bool m_makes_scene = false;  ///< that is the thread's job
+    bool m_new = false;          ///< the thread has something that is not shown yet
     Clock::time_point m_next_step = Clock::now();
     Image m_picture;
     StepThread m_thread;  ///< last: it ends before what it uses

@@ -106,8 +106,8 @@ class ViewerWindow : public testing::Test {
     /// The body holds its first pose, and the shirt has come to rest on it.
     Image resting_shirt() {
         start({"--solver", "xpbd-10", "--paused"});
-        desktop().click(20, 43);  // "body moves"
-        desktop().click(52, 18);  // "Play"
+        desktop().click(20, 38);  // "body moves"
+        desktop().click(50, 17);  // "Play"
         desktop().move(width - 30, 30);
         wait_seconds(1.0);
         return still_screen();
@@ -191,14 +191,26 @@ TEST_F(ViewerWindow, TheSolverIsSwitchedByThePanel) {
     start({"--solver", "xpbd-10"});
     EXPECT_TRUE(becomes_true([&] { return title().find("xpbd-10") != std::string::npos; }))
         << title();
-    desktop().click(80, 90);   // the list of solvers
-    desktop().click(60, 120);  // its first one
+    desktop().click(80, 164);  // the list of solvers
+    desktop().click(60, 190);  // its first one
     EXPECT_TRUE(becomes_true([&] { return title().find("quasi-newton") != std::string::npos; }))
         << title();
     const Image first = screen();
     EXPECT_TRUE(becomes_true([&] { return changed_share(first, screen()) > 0.01; }))
         << "it goes on";
     EXPECT_GT(garment_share(screen()), 0.01);
+    EXPECT_TRUE(runs());
+}
+
+TEST_F(ViewerWindow, AnotherGarmentIsPutOnByThePanel) {
+    start({"--solver", "xpbd-10"});
+    desktop().click(80, 80);   // the list of garments
+    desktop().click(60, 106);  // its first one
+    EXPECT_TRUE(becomes_true([&] {
+        return title().find("tshirt_1000+pants_1000, xpbd-10") != std::string::npos;
+    })) << title();
+    const Image first = screen();
+    EXPECT_TRUE(becomes_true([&] { return changed_share(first, screen()) > 0.01; }));
     EXPECT_TRUE(runs());
 }
 
