@@ -50,7 +50,8 @@ ViewerScene::ViewerScene(const SceneOptions& options, int threads)
     : m_base(make_bake_scene(options)),
       m_threads(threads),
       m_solver(options.solver),
-      m_fabric(m_base.cloth->garment().fabric()) {
+      m_fabric(m_base.cloth->garment().fabric()),
+      m_trees(std::make_shared<ObstacleTrees>()) {
     m_asked.solver = m_solver;
     m_asked.fabric = m_fabric;
     restart();
@@ -70,6 +71,7 @@ std::unique_ptr<ViewerScene::Worn> ViewerScene::wear(const std::string& solver,
     if (pull) garment = garment.with_goals(pull->limits());
     auto worn = std::make_unique<Worn>(m_base.cloth, std::move(garment));
     worn->stepper = make_solver(solver, worn->scene, {{}, m_threads, nullptr});
+    worn->stepper->prepare(frame_time());
     return worn;
 }
 
@@ -145,12 +147,14 @@ Boundary ViewerScene::next_boundary(const ViewerControls& controls) const {
     const bool moves = controls.body_moves && m_frame.frame < frames();
     Boundary boundary = m_base.cloth->boundary(motion_time(m_frame.frame),
                                                motion_time(m_frame.frame + (moves ? 1 : 0)));
+    boundary.trees = m_trees;
     boundary.accelerations = wind_accelerations(m_wind, garment(), m_state, frame_time());
     if (m_pull) boundary.goals = m_pull->goals(m_state.x, controls.pull->target);
     return boundary;
 }
 
 void ViewerScene::step(const ViewerControls& controls) {
+    m_trees->begin_step();
     m_boundary = next_boundary(controls);
     Stepper& stepper = m_pull ? *m_pulled->stepper : *m_free->stepper;
     const auto start = std::chrono::steady_clock::now();

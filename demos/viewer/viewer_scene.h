@@ -5,6 +5,7 @@
 #include <string>
 
 #include "collision/proximity/metrics.h"
+#include "collision/proximity/obstacle_trees.h"
 #include "collision/proximity/proximity.h"
 #include "demos/bake/bake_scene.h"
 #include "demos/viewer/cloth_pull.h"
@@ -113,7 +114,8 @@ class ViewerScene {
     std::unique_ptr<Worn> m_free, m_pulled;  ///< without a pull; with one, or null
     std::optional<ClothPull> m_pull;
     ClothState m_state;
-    Boundary m_boundary;  ///< of the last step
+    std::shared_ptr<ObstacleTrees> m_trees;  ///< of the body: a new stepper need not build them
+    Boundary m_boundary;                     ///< of the last step
     Proximity m_proximity;
     ViewerFrame m_frame;
 };

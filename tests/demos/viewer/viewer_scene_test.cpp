@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "data/core/paths.h"
-#include "demos/compare/arguments.h"
+#include "demos/compare/solver_factory.h"
 
 namespace cloth::viewer_scene_test {
 
@@ -82,6 +82,24 @@ TEST(ViewerScene, ARestartGivesTheSameBits) {
         EXPECT_TRUE(same_points(scene.frame().cloth, first.cloth)) << solver;
         EXPECT_EQ(scene.frame().frame, first.frame);
     }
+}
+
+// Bake's loop is another one, over the same scene.
+TEST(ViewerScene, StepsAreThoseOfTheSolverAlone) {
+    const SceneOptions options = shirt("quasi-newton");
+    ViewerScene scene(options);
+    const ViewerControls controls = scene.controls();
+    const BakeScene alone = make_bake_scene(options);
+    const auto stepper = make_solver(options.solver, *alone.cloth, {});
+    ClothState state = alone.cloth->start();
+    for (int k = 0; k < 6; ++k) {
+        scene.advance(controls);
+        stepper->step(alone.cloth->frame_boundary(k - alone.cloth->lead_in_frames()),
+                      alone.cloth->frame_time(), state);
+    }
+    EXPECT_TRUE(same_points(scene.state().x, state.x));
+    EXPECT_TRUE(same_points(scene.frame().skin,
+                            alone.skin(scene.frame().frame * alone.cloth->frame_time())));
 }
 
 TEST(ViewerScene, ASolverIsSwitchedWithoutAJumpOfTheState) {
