@@ -1,23 +1,19 @@
 #include "demos/viewer/window.h"
 
-#include <epoxy/gl.h>
-// after epoxy, which has OpenGL's names
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
+#include <exception>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "demos/compare/figure_meshes.h"
 #include "demos/viewer/drawer.h"
+#include "demos/viewer/gl_window.h"
 #include "demos/viewer/orbit_camera.h"
 #include "demos/viewer/panel.h"
 #include "demos/viewer/pick.h"
@@ -31,106 +27,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double picture_time = 1.0 / 60.0;  // (s)
 
-std::string& glfw_problem() {
-    static std::string problem;
-    return problem;
-}
-
-std::runtime_error window_error(const std::string& remedy) {
-    const std::string& problem = glfw_problem();
-    return std::runtime_error("viewer: no window can be opened" +
-                              (problem.empty() ? "" : " (" + problem + ")") +
-                              ". Remedy: " + remedy);
-}
-
-/// GLFW, a window with OpenGL 3.3, and ImGui in it.
-class Window {
- public:
-    Window(int width, int height) {
-        glfwSetErrorCallback([](int, const char* text) { glfw_problem() = text; });
-        if (!glfwInit())
-            throw window_error(
-                "run it on a desktop, or over `ssh -X`; without a screen, for --frames and "
-                "--screenshot: apt-get install xvfb xauth, and put `xvfb-run -a -s \"-screen 0 "
-                "1280x800x24\"` before the command");
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-        glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-        glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-        m_window = glfwCreateWindow(width, height, "viewer", nullptr, nullptr);
-        if (!m_window) {
-            glfwTerminate();
-            throw window_error(
-                "install a driver for OpenGL 3.3, such as Debian's libgl1-mesa-dri, or set "
-                "LIBGL_ALWAYS_SOFTWARE=1");
-        }
-        glfwMakeContextCurrent(m_window);
-        glfwSetWindowUserPointer(m_window, this);
-        // ImGui, which calls this one too, would miss keys that are pressed only between pictures.
-        glfwSetKeyCallback(m_window, [](GLFWwindow* window, int key, int, int action, int) {
-            if (action == GLFW_RELEASE) return;
-            static_cast<Window*>(glfwGetWindowUserPointer(window))->m_keys.push_back(key);
-        });
-        glfwSwapInterval(0);  // the loop keeps to picture_time by itself
-        start_imgui();
-    }
-    ~Window() {
-        ImGui_ImplOpenGL3_Shutdown();
-        ImGui_ImplGlfw_Shutdown();
-        ImGui::DestroyContext();
-        glfwDestroyWindow(m_window);
-        glfwTerminate();
-    }
-    Window(const Window&) = delete;
-    Window& operator=(const Window&) = delete;
-
-    bool is_closed() const { return glfwWindowShouldClose(m_window) != 0; }
-    void close() { glfwSetWindowShouldClose(m_window, GLFW_TRUE); }
-    void set_title(const std::string& title) { glfwSetWindowTitle(m_window, title.c_str()); }
-
-    void begin_picture() {
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui_ImplGlfw_NewFrame();
-        ImGui::NewFrame();
-        glfwGetFramebufferSize(m_window, &picture_width, &picture_height);
-        picture_width = std::max(picture_width, 1);
-        picture_height = std::max(picture_height, 1);
-    }
-    void draw_panel() {
-        ImGui::Render();
-        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    }
-    void show() { glfwSwapBuffers(m_window); }
-    /// Keys that were pressed since the last call, in that order.
-    std::vector<int> take_keys() { return std::exchange(m_keys, {}); }
-
-    int picture_width = 1, picture_height = 1;  ///< (pixels)
-
- private:
-    void start_imgui() {
-        IMGUI_CHECKVERSION();
-        ImGui::CreateContext();
-        ImGui::StyleColorsDark();
-        ImGuiStyle& style = ImGui::GetStyle();
-        style.WindowRounding = 0.0f;
-        style.FrameRounding = 3.0f;
-        style.FramePadding.y = 2.0f;  // so that the panel fits into 800 pixels
-        style.ItemSpacing.y = 3.0f;
-        ImGuiIO& io = ImGui::GetIO();
-        io.IniFilename = nullptr;  // it would write into the working folder
-        const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-        if (std::filesystem::exists(font)) io.Fonts->AddFontFromFileTTF(font, 14.0f);
-        ImGui_ImplGlfw_InitForOpenGL(m_window, true);
-        ImGui_ImplOpenGL3_Init("#version 330 core");
-    }
-
-    GLFWwindow* m_window = nullptr;
-    std::vector<int> m_keys;
-};
-
 /// The loop: it shows what the scene has done last, while a thread makes the next step.
 class Viewer {
  public:
-    Viewer(const ViewerOptions& options, Window& window)
+    Viewer(const ViewerOptions& options, GlWindow& window)
         : m_options(options),
           m_window(window),
           m_scene(std::make_unique<ViewerScene>(options.scene, options.threads)),
@@ -145,12 +45,12 @@ class Viewer {
         while (!m_window.is_closed()) {
             take_step();
             start_step();
-            glfwPollEvents();
+            m_window.take_events();
             draw();
             if (m_options.frames > 0 && m_shown.steps >= m_options.frames) break;
             if (m_options.frames > 0) continue;
             next_picture = std::max(next_picture + ticks(picture_time), Clock::now());
-            wait_until(next_picture);
+            m_window.take_events_until(next_picture);
         }
         m_thread.wait();
         save_picture();
@@ -208,14 +108,6 @@ class Viewer {
         show_scene();
     }
 
-    static void wait_until(Clock::time_point time) {
-        for (;;) {
-            const double left = std::chrono::duration<double>(time - Clock::now()).count();
-            if (left <= 0.0) return;
-            glfwWaitEventsTimeout(left);
-        }
-    }
-
     void take_step() {
         if (m_options.frames > 0) m_thread.wait();
         if (!m_thread.is_idle() || !m_new) return;
@@ -263,7 +155,8 @@ class Viewer {
         m_window.begin_picture();
         m_panel.draw(m_controls, m_shown, m_scene->frames());
         const double shift = 0.5 * static_cast<double>(Panel::width) / io().DisplaySize.x;
-        const double aspect = static_cast<double>(m_window.picture_width) / m_window.picture_height;
+        const double aspect =
+            static_cast<double>(m_window.picture_width()) / m_window.picture_height();
         if (m_first || m_panel.view.reset_camera)
             m_camera.frame(m_shown.skin, aspect * (1.0 - 2.0 * shift));
         m_first = false;
@@ -273,11 +166,11 @@ class Viewer {
         m_view = m_camera.camera(shift, aspect);
         draw_hand();
         if (m_load || m_panel.view.shadows != m_shadows || m_panel.view.body != m_body) load();
-        m_drawer.draw(m_view, m_window.picture_width, m_window.picture_height,
+        m_drawer.draw(m_view, m_window.picture_width(), m_window.picture_height(),
                       m_panel.view.wireframe);
         m_window.draw_panel();
         if (is_last_picture())
-            m_picture = drawn_picture(m_window.picture_width, m_window.picture_height);
+            m_picture = drawn_picture(m_window.picture_width(), m_window.picture_height());
         m_window.show();
     }
 
@@ -398,7 +291,7 @@ class Viewer {
     }
 
     ViewerOptions m_options;
-    Window& m_window;
+    GlWindow& m_window;
     std::unique_ptr<ViewerScene> m_scene;  ///< the thread's, while that is not idle
     std::unique_ptr<ViewerScene> m_next_scene;
     std::string m_refusal;  ///< why there is no next scene
@@ -423,7 +316,7 @@ class Viewer {
 }  // namespace
 
 void run_viewer(const ViewerOptions& options) {
-    Window window(options.width, options.height);
+    GlWindow window(options.width, options.height);
     Viewer viewer(options, window);
     viewer.run();
 }

@@ -26,6 +26,17 @@ std::string output_of(const std::string& command) {
     return text;
 }
 
+std::vector<std::string> server_command(int width, int height, const std::string& folder,
+                                        const std::vector<std::string>& options) {
+    std::vector<std::string> command = {
+        "Xvfb",    "-displayfd", "1",
+        "-screen", "0",          std::to_string(width) + "x" + std::to_string(height) + "x24",
+        "-fbdir",  folder,       "-nolisten",
+        "tcp"};
+    command.insert(command.end(), options.begin(), options.end());
+    return command;
+}
+
 /// A field of the header of an XWD file, which is what Xvfb writes.
 size_t xwd_field(const std::string& bytes, size_t index) {
     const auto at = [&](size_t k) {
@@ -74,10 +85,8 @@ bool Desktop::is_installed() {
     return !output_of("command -v Xvfb").empty() && !output_of("command -v xdotool").empty();
 }
 
-Desktop::Desktop(int width, int height)
-    : m_server({"Xvfb", "-displayfd", "1", "-screen", "0",
-                std::to_string(width) + "x" + std::to_string(height) + "x24", "-fbdir",
-                m_folder.file("."), "-nolisten", "tcp"},
+Desktop::Desktop(int width, int height, const std::vector<std::string>& options)
+    : m_server(server_command(width, height, m_folder.file("."), options),
                m_folder.file("server.txt")) {
     const auto number = [&] {
         const std::string text = content_of(m_folder.file("server.txt"));

@@ -36,7 +36,8 @@ class Desktop {
  public:
     static bool is_installed();  ///< Xvfb and xdotool
 
-    Desktop(int width, int height);
+    /// @param options  more of Xvfb's
+    Desktop(int width, int height, const std::vector<std::string>& options = {});
 
     /// As DISPLAY has it, such as ":7".
     const std::string& display() const { return m_display; }

@@ -231,6 +231,17 @@ TEST_F(ViewerWindow, ClosesByAKey) {
     EXPECT_EQ(status(), 0);
 }
 
+TEST(ViewerWithoutDisplay, NeitherDoesItOpenAWindowWithoutOpenGl) {
+    if (!Desktop::is_installed()) GTEST_SKIP() << "there is no Xvfb: `apt-get install xvfb`";
+    const Desktop desktop(320, 240, {"-extension", "GLX"});
+    const TemporaryFolder folder;
+    ChildProgram viewer({VIEWER}, folder.file("viewer.txt"), {"DISPLAY=" + desktop.display()});
+    EXPECT_EQ(viewer.wait(), 1);
+    const std::string text = content_of(folder.file("viewer.txt"));
+    for (const char* word : {"no window can be opened", "GLX", "Remedy", "driver"})
+        EXPECT_NE(text.find(word), std::string::npos) << text;
+}
+
 TEST(ViewerWithoutDisplay, EndsWithARemedy) {
     const TemporaryFolder folder;
     ChildProgram viewer({"env", "-u", "DISPLAY", "-u", "WAYLAND_DISPLAY", VIEWER},
