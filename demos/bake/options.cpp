@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "data/files/cache_format.h"
+#include "demos/compare/arguments.h"
 #include "demos/compare/command_line.h"
 
 namespace cloth {

@@ -46,14 +46,29 @@ GlWindow::GlWindow(int width, int height) {
             "LIBGL_ALWAYS_SOFTWARE=1");
     }
     glfwMakeContextCurrent(m_window);
-    glfwSetWindowUserPointer(m_window, this);
-    // ImGui, which calls this one too, would miss keys that are pressed only between pictures.
-    glfwSetKeyCallback(m_window, [](GLFWwindow* window, int key, int, int action, int) {
-        if (action == GLFW_PRESS || (action == GLFW_REPEAT && key == GLFW_KEY_N))
-            static_cast<GlWindow*>(glfwGetWindowUserPointer(window))->m_keys.push_back(key);
-    });
     glfwSwapInterval(0);  // the caller waits by itself
+    watch_input();
     start_imgui();
+}
+
+/// ImGui, which calls these too, knows of what is there when a picture begins: it would miss keys
+/// that are pressed and released before.
+void GlWindow::watch_input() {
+    glfwSetWindowUserPointer(m_window, this);
+    static const auto self = [](GLFWwindow* window) -> GlWindow& {
+        return *static_cast<GlWindow*>(glfwGetWindowUserPointer(window));
+    };
+    glfwSetKeyCallback(m_window, [](GLFWwindow* window, int key, int, int action, int) {
+        self(window).m_has_input = true;
+        if (action == GLFW_PRESS || (action == GLFW_REPEAT && key == GLFW_KEY_N))
+            self(window).m_keys.push_back(key);
+    });
+    glfwSetCursorPosCallback(
+        m_window, [](GLFWwindow* window, double, double) { self(window).m_has_input = true; });
+    glfwSetMouseButtonCallback(
+        m_window, [](GLFWwindow* window, int, int, int) { self(window).m_has_input = true; });
+    glfwSetScrollCallback(
+        m_window, [](GLFWwindow* window, double, double) { self(window).m_has_input = true; });
 }
 
 GlWindow::~GlWindow() {
@@ -105,8 +120,21 @@ void GlWindow::take_events_until(std::chrono::steady_clock::time_point time) {
     }
 }
 
+void GlWindow::wait_for_event(std::chrono::steady_clock::time_point time) {
+    const auto left = time - std::chrono::steady_clock::now();
+    if (left > left.zero()) glfwWaitEventsTimeout(std::chrono::duration<double>(left).count());
+}
+
+void GlWindow::wake() {
+    glfwPostEmptyEvent();
+}
+
 std::vector<int> GlWindow::take_keys() {
     return std::exchange(m_keys, {});
+}
+
+bool GlWindow::take_input() {
+    return std::exchange(m_has_input, false);
 }
 
 void GlWindow::begin_picture() {

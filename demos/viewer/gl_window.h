@@ -31,8 +31,14 @@ class GlWindow {
 
     void take_events();
     void take_events_until(std::chrono::steady_clock::time_point time);
+    /// Until there is one, or until that time.
+    void wait_for_event(std::chrono::steady_clock::time_point time);
+    /// Ends wait_for_event(); other threads may call it.
+    void wake();
     /// Keys that were pressed since the last call, in that order, as GLFW numbers them.
     std::vector<int> take_keys();
+    /// Whether mouse or keys did something since the last call.
+    bool take_input();
 
     void begin_picture();
     void draw_panel();  ///< over what was drawn
@@ -42,10 +48,12 @@ class GlWindow {
     int picture_height() const { return m_height; }  ///< (pixels)
 
  private:
+    void watch_input();
     void start_imgui();
 
     GLFWwindow* m_window = nullptr;
     std::vector<int> m_keys;
+    bool m_has_input = false;
     int m_width = 1, m_height = 1;
 };
 

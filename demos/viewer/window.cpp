@@ -51,12 +51,24 @@ class Viewer {
             if (m_options.frames > 0) continue;
             next_picture = std::max(next_picture + ticks(picture_time), Clock::now());
             m_window.take_events_until(next_picture);
+            rest();
         }
         m_thread.wait();
         save_picture();
     }
 
  private:
+    /// Where the user does nothing, pictures are drawn for new steps, and seldom without: software
+    /// that draws has the same cores as the solver.
+    void rest() {
+        const auto now = Clock::now();
+        if (m_window.take_input() || m_controls.pull) m_awake_until = now + ticks(0.3);
+        if (now < m_awake_until || (m_new && m_thread.is_idle())) return;
+        auto end = now + ticks(0.2);
+        if (m_controls.playing && m_thread.is_idle()) end = std::min(end, m_next_step);
+        m_window.wait_for_event(end);
+    }
+
     static Clock::duration ticks(double seconds) {
         return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     }
@@ -96,6 +108,7 @@ class Viewer {
             } catch (const std::exception& error) {
                 m_refusal = error.what();
             }
+            m_window.wake();
         });
     }
 
@@ -148,7 +161,10 @@ class Viewer {
         if (due) m_next_step = std::max(m_next_step + ticks(m_scene->frame_time()), now);
         m_handed = m_controls;
         m_new = true;
-        m_thread.start([this, controls] { m_scene->advance(controls); });
+        m_thread.start([this, controls] {
+            m_scene->advance(controls);
+            m_window.wake();
+        });
     }
 
     void draw() {
@@ -308,7 +324,7 @@ class Viewer {
     bool m_first = true, m_load = true, m_shadows = true, m_body = true;
     bool m_makes_scene = false;  ///< that is the thread's job
     bool m_new = false;          ///< the thread has something that is not shown yet
-    Clock::time_point m_next_step = Clock::now();
+    Clock::time_point m_next_step = Clock::now(), m_awake_until = Clock::now();
     Image m_picture;
     StepThread m_thread;  ///< last: it ends before what it uses
 };
