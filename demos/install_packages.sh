@@ -5,6 +5,7 @@
 #   demos/install_packages.sh notorch  all but LibTorch, which training needs
 #   demos/install_packages.sh checks   as notorch, and the tools of .ci/run: format, lint, ThreadSanitizer
 #   demos/install_packages.sh demo     what demos/run.sh builds: the runtime, pictures and videos
+#   demos/install_packages.sh viewer   as demo, and the window of demos/viewer
 set -euo pipefail
 
 packages=(
@@ -13,18 +14,21 @@ packages=(
   libosmesa6-dev libfreetype-dev fonts-dejavu-core libpng-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
 )
-tests=(libcgal-dev libgtest-dev libbenchmark-dev)
+viewer=(libglfw3-dev libimgui-dev libepoxy-dev)
+# the viewer's window is tested on Xvfb's screen, by xdotool's mouse
+tests=(libcgal-dev libgtest-dev libbenchmark-dev "${viewer[@]}" xvfb xdotool)
 # clang only recommends the sanitizers' runtime
 checks=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libomp-14-dev gcovr)
 # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
 training=(libtorch-dev libopenblas0)
 case "${1:-all}" in
   demo) ;;
+  viewer) packages+=("${viewer[@]}") ;;
   notorch) packages+=("${tests[@]}") ;;
   checks) packages+=("${tests[@]}" "${checks[@]}") ;;
   all) packages+=("${tests[@]}" "${training[@]}") ;;
   *)
-    echo "usage: demos/install_packages.sh [all|notorch|checks|demo]" >&2
+    echo "usage: demos/install_packages.sh [all|notorch|checks|demo|viewer]" >&2
     exit 2
     ;;
 esac

@@ -7,6 +7,7 @@
 
 #include "data/files/cache_writer.h"
 #include "demos/bake/bake_scene.h"
+#include "demos/bake/options.h"
 #include "gnn/stepper.h"
 
 namespace cloth {

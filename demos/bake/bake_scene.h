@@ -2,8 +2,9 @@
 
 #include <functional>
 #include <memory>
+#include <vector>
 
-#include "demos/bake/options.h"
+#include "demos/bake/scene_options.h"
 #include "demos/compare/comparison_scene.h"
 
 namespace cloth {
@@ -13,11 +14,12 @@ struct BakeScene {
     std::shared_ptr<const ComparisonScene> cloth;
     TriMesh body;                        ///< before any motion
     std::function<Points(double)> skin;  ///< its vertices at a time of the scene's clock (s)
+    std::vector<Faces> parts;  ///< faces of each garment, numbered as all its vertices are
 
     int frames() const { return cloth->frames() + 1; }  ///< the first pose, and one for each step
 };
 
 /// @throws LoadError, ArgumentError, UsageError if garment, body or motion cannot be had
-BakeScene make_bake_scene(const BakeOptions& options);
+BakeScene make_bake_scene(const SceneOptions& options);
 
 }  // namespace cloth

@@ -1,0 +1,61 @@
+#include "demos/bake/scene_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "demos/compare/body_scene.h"
+#include "demos/compare/command_line.h"
+
+namespace cloth {
+namespace {
+
+/// As those of hello_character.
+void add_character(CLI::App& app, CharacterSceneSettings& character) {
+    app.add_option("--character", character.character,
+                   "rigged and animated file (.glb, .fbx, ...) that wears a mesh file,\n"
+                   "instead of the project's body")
+        ->type_name("FILE");
+    app.add_option("--skin", character.skin.mesh_name, "its mesh that is skin (default: all)")
+        ->type_name("NAME");
+    app.add_option("--character-scale", character.skin.scale, "metres per unit of the file");
+    app.add_option("--garment-scale", character.garment_scale, "metres per unit of the file");
+    app.add_option("--weld", character.weld, "vertices as near as this become one (m)");
+    app.add_option("--clearance", character.clearance, "from skin to cloth at the start (m)");
+    app.add_option("--pin", character.pin, "lowest and highest vertex that rides on the skin (m)")
+        ->expected(2);
+    app.add_option("--settle", character.settle, "its first pose is held for so long (s)");
+}
+
+}  // namespace
+
+void add_scene(CLI::App& app, SceneOptions& options) {
+    add_garment(app, options.garment, "what is worn (default tshirt)");
+    app.add_option("--motion", options.motion,
+                   "01_01 (default), 01_03, Boxing_Toes, a BVH file; of a --character, the\n"
+                   "name of its animation (default: the first)")
+        ->type_name("NAME");
+    app.add_option("--fabric", options.fabric, "soft cotton (default), or cotton as measured")
+        ->check(CLI::IsMember({"soft", "real"}).description(""))
+        ->type_name("soft|real");
+    app.add_option("--solver", options.solver,
+                   "quasi-newton (default), small, xpbd-40, reference and the others that\n"
+                   "compare --help names")
+        ->type_name("NAME");
+    add_whole_number(app, "--rate", options.rate, 10, 240,
+                     "frames per second, and steps (default 30, which networks need)");
+    add_character(app, options.character);
+}
+
+void finish_scene(SceneOptions& options) {
+    if (options.character.character.empty()) {
+        if (options.motion.empty()) options.motion = "01_01";
+        return check_garment_name(options.garment);
+    }
+    CharacterSceneSettings& character = options.character;
+    character.garment = options.garment;
+    character.skin.animation = options.motion;
+    character.fabric = options.fabric;
+    character.rate = options.rate;
+    character.steps = options.frames == 0 ? 0 : options.frames - 1;
+}
+
+}  // namespace cloth
