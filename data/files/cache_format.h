@@ -8,6 +8,7 @@ namespace cloth {
 enum class CacheFormat {
     pc2,          ///< POINTCACHE2: places alone, little-endian
     mdd,          ///< Lightwave's: places and times, big-endian
+    glb,          ///< glTF 2.0: faces, and a morph target for each frame
     usda,         ///< Universal Scene Description as text: faces, too
     obj_sequence  ///< a folder with a whole mesh for each frame
 };
@@ -17,7 +18,7 @@ enum class CacheFormat {
 CacheFormat cache_format(const std::string& path);
 
 /// Where a cache is while it is written: NAME.part.EXT of NAME.EXT. The ending stays, because
-/// programs go by it.
+/// programs go by it. The frames of NAME.glb are in a point cache, NAME.glb.part.pc2.
 std::string unfinished_cache(const std::string& path);
 
 }  // namespace cloth

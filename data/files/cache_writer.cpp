@@ -5,6 +5,7 @@
 
 #include "data/core/check_range.h"
 #include "data/files/cache_format.h"
+#include "data/files/glb_writer.h"
 #include "data/files/obj_sequence.h"
 #include "data/files/point_cache_writer.h"
 #include "data/files/usd_writer.h"
@@ -56,6 +57,8 @@ std::unique_ptr<CacheWriter> make_cache_writer(const std::string& path, const Tr
             return std::make_unique<Pc2Writer>(path, mesh.vertices.rows(), settings, start);
         case CacheFormat::mdd:
             return std::make_unique<MddWriter>(path, mesh.vertices.rows(), settings, start);
+        case CacheFormat::glb:
+            return std::make_unique<GlbWriter>(path, mesh, settings, start);
         case CacheFormat::usda:
             return std::make_unique<UsdWriter>(path, mesh, settings, start);
         case CacheFormat::obj_sequence:

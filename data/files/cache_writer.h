@@ -61,7 +61,8 @@ class CacheWriter {
 
 /// A writer of the format that the ending of the path says, see cache_format().
 ///
-/// @param mesh   USD and OBJ have its faces, USD its vertices as the mesh at rest; point caches
+/// @param mesh   USD, glTF and OBJ have its faces, USD its vertices as the mesh at rest; point
+/// caches
 ///               belong to a mesh file with the same order of vertices, such as save_obj() writes
 /// @param start  go_on: frames that an earlier, interrupted run has left are added again, from
 ///               the first one, and are compared

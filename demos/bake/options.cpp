@@ -14,7 +14,7 @@ void add_cache(CLI::App& app, BakeOptions& options) {
                      "frames in the cache (default 0: the whole motion)");
     add_whole_number(app, "--threads", options.threads, 0, 256, "0: all cores");
     app.add_option("--out", options.out,
-                   "the garment's cache: NAME.pc2, NAME.mdd, NAME.usda, or a folder for a\n"
+                   "the garment's cache: NAME.pc2, .mdd, .usda or .glb, or a folder for a\n"
                    "sequence of OBJ files; NAME_rest.obj is the mesh that it belongs to")
         ->type_name("FILE");
     app.add_option("--body", options.body, "the moving body's cache, in the same way")

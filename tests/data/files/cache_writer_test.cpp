@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "data/core/read_file.h"
+#include "data/files/byte_order.h"
 #include "data/files/cache_format.h"
 #include "data/files/mesh_io.h"
 #include "tests/data/files/file_fixture.h"
@@ -17,7 +19,7 @@ using namespace test;
 
 namespace {
 
-const char* const single_files[] = {"a.pc2", "a.mdd", "a.usda"};
+const char* const single_files[] = {"a.pc2", "a.mdd", "a.usda", "a.glb"};
 
 class Caches : public FileTest {
  protected:
@@ -99,7 +101,7 @@ TEST_F(Caches, AnUnfinishedOneLeavesTheOldOneAlone) {
 }
 
 TEST_F(Caches, FramesThatCannotBeRightAreRefused) {
-    for (const std::string name : {"a.pc2", "a.mdd", "a.usda", "a"}) {
+    for (const std::string name : {"a.pc2", "a.mdd", "a.usda", "a.glb", "a"}) {
         SCOPED_TRACE(name);
         const auto cache = make_cache_writer(path(name), sample_mesh(), {30.0, 2});
         EXPECT_THROW(cache->add(Points::Zero(5, 3)), ArgumentError);
@@ -136,6 +138,7 @@ TEST_F(Caches, UnknownEndingsAreRefused) {
         EXPECT_THROW(cache_format(wrong), ArgumentError) << wrong;
     EXPECT_EQ(unfinished_cache("out.d/shirt.pc2"), "out.d/shirt.part.pc2");
     EXPECT_EQ(unfinished_cache("shirt.mdd"), "shirt.part.mdd");
+    EXPECT_EQ(unfinished_cache("out.d/shirt.glb"), "out.d/shirt.glb.part.pc2");
 }
 
 TEST_F(Caches, SettingsHaveRanges) {
@@ -176,6 +179,79 @@ TEST_F(Caches, AnObjSequenceGoesOn) {
     EXPECT_EQ(load_mesh(path("a/a_0003.obj")).vertices, sample_frame(2));
     const auto files = std::filesystem::directory_iterator(path("a"));
     EXPECT_EQ(std::distance(begin(files), end(files)), 3) << "nothing else is left";
+}
+
+/// The numbers of an accessor of a .glb file, read as the specification says.
+std::vector<float> numbers_of(const nlohmann::json& scene, const std::string& binary, int index) {
+    const nlohmann::json& accessor = scene["accessors"].at(static_cast<size_t>(index));
+    const nlohmann::json& view = scene["bufferViews"].at(accessor["bufferView"].get<size_t>());
+    const size_t begin = view["byteOffset"].get<size_t>() + accessor["byteOffset"].get<size_t>();
+    const size_t lanes = accessor["type"] == "VEC3" ? 3 : 1;
+    std::vector<float> numbers(accessor["count"].get<size_t>() * lanes);
+    for (size_t k = 0; k < numbers.size(); ++k)
+        numbers[k] = number_at<float>(binary.data() + begin + 4 * k, ByteOrder::little);
+    return numbers;
+}
+
+TEST_F(Caches, GlbIsItsFirstFrameAndMorphsToTheOthers) {
+    const int count = 4;
+    write_cache(path("cape.glb"), count);
+    const TriMesh first = load_mesh(path("cape.glb"));
+    EXPECT_LT((first.vertices - sample_frame(0)).cwiseAbs().maxCoeff(), 1e-6);
+    EXPECT_EQ(first.faces, sample_mesh().faces);
+
+    const std::string file = read_file(path("cape.glb"));
+    const auto word = [&](size_t at) {
+        return number_at<std::uint32_t>(file.data() + at, ByteOrder::little);
+    };
+    ASSERT_EQ(word(8), file.size());
+    const size_t text = word(12);
+    EXPECT_EQ(text % 4, 0u);
+    const auto scene = nlohmann::json::parse(file.substr(20, text));
+    const std::string binary = file.substr(28 + text);
+    ASSERT_EQ(word(20 + text), binary.size());
+    EXPECT_EQ(scene["buffers"][0]["byteLength"], binary.size());
+    const auto& primitive = scene["meshes"][0]["primitives"][0];
+    ASSERT_EQ(primitive["targets"].size(), size_t{count - 1});
+    const Points normals = vertex_normals(sample_frame(0), sample_mesh().faces);
+    for (int k = 1; k < count; ++k) {
+        const auto& target = primitive["targets"][static_cast<size_t>(k - 1)];
+        const Points moved = sample_frame(k) - sample_frame(0);
+        const Points turned = vertex_normals(sample_frame(k), sample_mesh().faces) - normals;
+        const auto places = numbers_of(scene, binary, target["POSITION"]);
+        const auto turns = numbers_of(scene, binary, target["NORMAL"]);
+        ASSERT_EQ(places.size(), static_cast<size_t>(moved.size()));
+        for (Eigen::Index i = 0; i < moved.size(); ++i) {
+            EXPECT_NEAR(places[static_cast<size_t>(i)], moved.data()[i], 1e-6);
+            EXPECT_NEAR(turns[static_cast<size_t>(i)], turned.data()[i], 1e-6);
+        }
+        const auto& accessor = scene["accessors"][target["POSITION"].get<size_t>()];
+        for (size_t c = 0; c < 3; ++c) {
+            EXPECT_EQ(accessor["max"][c].get<float>(),
+                      moved.col(static_cast<Eigen::Index>(c)).cast<float>().maxCoeff());
+        }
+    }
+    const auto& sampler = scene["animations"][0]["samplers"][0];
+    const auto times = numbers_of(scene, binary, sampler["input"]);
+    const auto weights = numbers_of(scene, binary, sampler["output"]);
+    ASSERT_EQ(times.size(), size_t{count});
+    ASSERT_EQ(weights.size(), size_t{count * (count - 1)});
+    for (size_t k = 0; k < times.size(); ++k) {
+        EXPECT_FLOAT_EQ(times[k], static_cast<float>(k) / 30.0f);
+        for (size_t target = 1; target < times.size(); ++target)
+            EXPECT_EQ(weights[k * (times.size() - 1) + target - 1], k == target ? 1.0f : 0.0f);
+    }
+    write_cache(path("still.glb"), 1);
+    EXPECT_LT((load_mesh(path("still.glb")).vertices - sample_frame(0)).cwiseAbs().maxCoeff(),
+              1e-6);
+}
+
+TEST_F(Caches, GlbThatWouldBeTooLargeIsRefused) {
+    EXPECT_THROW(make_cache_writer(path("a.glb"), sample_mesh(), {30.0, 1001}), ArgumentError);
+    TriMesh large = sample_mesh();
+    large.vertices = Points::Zero(200000, 3);
+    EXPECT_THROW(make_cache_writer(path("a.glb"), large, {30.0, 1000}), ArgumentError);
+    EXPECT_FALSE(std::filesystem::exists(path("a.glb.part.pc2"))) << "nothing is begun";
 }
 
 // A triangle's text, written by hand as the format's definition has it.

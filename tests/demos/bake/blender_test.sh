@@ -8,7 +8,7 @@ fi
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
 source="$(cd "$(dirname "$0")/../../.." && pwd)"
-for out in cape.pc2 cape.mdd cape.usda cape; do
+for out in cape.pc2 cape.mdd cape.usda cape.glb cape; do
   "$1" --character /usr/share/assimp/models/X/BCN_Epileptic.X --pin 0.39 1.0 --frames 12 \
        --garment "$source/data/assets/garments/cape.obj" --out "$folder/$out"
 done
