@@ -5,8 +5,10 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
+#include "bullet_ext/bodyFollower.h"
 #include "bullet_ext/bodyGoals.h"
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/rootMotion.h"
@@ -407,6 +409,43 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
 
+void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower) {
+    if (!body) throw ArgumentError("follow()", "the soft body is null", "create it first");
+    if (follower && follower->simulated_size() != body->m_nodes.size())
+        throw ArgumentError(cloth::softBodyName(*body) + ": follow()",
+                            "the follower is of " + std::to_string(follower->simulated_size()) +
+                                " vertices, the body has " + std::to_string(body->m_nodes.size()) +
+                                " nodes",
+                            "make it for the mesh of the body, garmentOf(body)->rest()");
+    Entry& entry = m_entries[body];
+    entry.follower = std::move(follower);
+    if (entry.follower) entry.follower->show(cloth::nodePositions(*body), {}, {});
+}
+
+const cloth::Follower* btGnnSoftBodySolver::followerOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() ? it->second.follower.get() : nullptr;
+}
+
+void btGnnSoftBodySolver::showFollower(const btSoftBody& body, Entry& entry) {
+    if (!entry.follower) return;
+    if (entry.follower->simulated_size() != body.m_nodes.size()) {
+        entry.follower.reset();
+        return say(cloth::softBodyName(body) +
+                   ": its nodes were changed, so the mesh that follows it stays where it is. "
+                   "Remedy: make one for the nodes of now, and call follow() with it");
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const bool isCloth = entry.stepping == Stepping::cloth;
+    static const std::vector<cloth::LimbSet> none;
+    cloth::showFollower(body, cloth::nodePositions(body),
+                        isCloth ? entry.step->stepper().ignored_limbs() : none, m_obstacles, m_h,
+                        *entry.follower);
+    const std::chrono::duration<double, std::milli> passed =
+        std::chrono::steady_clock::now() - begin;
+    m_status.times.contact += passed.count();
+}
+
 void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
                                    btGnnTeleport kind) {
     if (!body) throw ArgumentError("teleport()", "the soft body is null", "create it first");
@@ -428,6 +467,8 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (entry.step) entry.step->restart();
     body->updateNormals();
     body->updateBounds();
+    if (entry.follower && entry.follower->simulated_size() == body->m_nodes.size())
+        entry.follower->show(cloth::nodePositions(*body), {}, {});
     if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
 }
 
@@ -447,7 +488,8 @@ void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
 }
 
 void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
-    m_obstacles.beginStep(static_cast<double>(solverdt));
+    m_h = static_cast<double>(solverdt);
+    m_obstacles.beginStep(m_h);
     m_status.clothBodies = m_status.bulletBodies = 0;
     m_status.sleepingBodies = m_status.frozenBodies = 0;
     m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
@@ -532,6 +574,7 @@ void btGnnSoftBodySolver::finishStep(const Stepped& cloth) {
     }
     m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
     for (const std::string& trouble : troublesOf(body, result)) say(trouble);
+    showFollower(body, entry);
     if (entry.failures >= m_settings.maxFailedSteps)
         giveUp(body, entry,
                "its stepper " + entry.step->stepper().name() + " failed " +
@@ -546,9 +589,12 @@ void btGnnSoftBodySolver::giveUp(btSoftBody& body, Entry& entry, const std::stri
 }
 
 void btGnnSoftBodySolver::updateSoftBodies() {
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (steppingOf(m_softBodySet[i]) == Stepping::bullet && m_softBodySet[i]->isActive())
-            m_softBodySet[i]->integrateMotion();
+    for (int i = 0; i < m_softBodySet.size(); ++i) {
+        btSoftBody& body = *m_softBodySet[i];
+        if (steppingOf(&body) != Stepping::bullet || !body.isActive()) continue;
+        body.integrateMotion();
+        showFollower(body, m_entries[&body]);
+    }
 }
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body,

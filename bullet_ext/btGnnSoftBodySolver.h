@@ -13,6 +13,7 @@
 
 #include "bullet_ext/bulletHandover.h"
 #include "bullet_ext/bulletObstacles.h"
+#include "data/core/follower.h"
 #include "data/core/garment.h"
 #include "gnn/stepper.h"
 
@@ -187,6 +188,23 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// @throws cloth::ArgumentError if the body is null or a number is not finite
     void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
                        double duration = 0.0);
+    /// Lets something follow a body's nodes, such as the mesh to be drawn where the soft body is a
+    /// coarse proxy of it, see cloth::EmbeddedMesh and cloth::make_proxy():
+    ///
+    ///     auto drawn = std::make_shared<cloth::EmbeddedMesh>(coarse.rest(), fine.rest());
+    ///     solver.follow(shirt, drawn);
+    ///     world.stepSimulation(dt);
+    ///     draw(drawn->vertices(), drawn->normals(), drawn->faces());
+    ///
+    /// It is shown the nodes and all obstacles now, after teleport(), and after each world step in
+    /// which the body is not asleep, Bullet's own steps too. Moving, scaling and new pins are
+    /// followed. It ends when the number of nodes changes, as by a cut, with a message, and when
+    /// the body leaves the world. It counts in the times of contact, but not for maxMs.
+    /// @param follower  of as many vertices as the body has nodes, in their order; null: no more
+    /// @throws cloth::ArgumentError if the body is null or the follower is of another number
+    void follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower);
+    /// What follows a body; null: nothing does, or it has ended.
+    const cloth::Follower* followerOf(const btSoftBody* body) const;
     /// Moves a body at once, without what cloth does when it is dragged there: where its character
     /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
     ///
@@ -222,6 +240,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         std::optional<cloth::GoalLimits> limits;      ///< by the user
         std::shared_ptr<cloth::RootMotion> root;      ///< null: nobody asked for it
         std::shared_ptr<cloth::BodyGoals> goals;      ///< null: nobody asked for goals
+        std::shared_ptr<cloth::Follower> follower;    ///< null: nobody asked for one
         cloth::BulletHandover handover;
         size_t topology = 0;
         std::vector<double> restLengths;  ///< of its links at the last step (m)
@@ -246,6 +265,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     const std::shared_ptr<cloth::BodyGoals>& goalsOf(const btSoftBody& body, Entry& entry);
     void joinGoals(btSoftBody& body, Entry& entry);
     cloth::RootMotion& rootOf(Entry& entry);
+    void showFollower(const btSoftBody& body, Entry& entry);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;
@@ -254,5 +274,6 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     btGnnSolverSettings m_settings;
     btGnnSolverStatus m_status;
     cloth::BulletObstacles m_obstacles;
+    double m_h = 0.0;  ///< the last world step (s)
     std::map<const btSoftBody*, Entry> m_entries;
 };

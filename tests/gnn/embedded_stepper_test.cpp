@@ -167,6 +167,23 @@ TEST(EmbeddedStepper, AStateThatWasMovedGoesOnFromThere) {
     }
 }
 
+TEST(EmbeddedStepper, AVelocityThatWasChangedIsGivenToTheProxy) {
+    Follower still, pushed;
+    ClothState a = ClothState::at_rest(still.fine), b = a;
+    for (int k = 0; k < 3; ++k) {
+        still.step(Follower::boundary(), a);
+        pushed.step(Follower::boundary(), b);
+    }
+    const Vec3 push(0.3, 0.1, -0.2);
+    b.v.rowwise() += push.transpose();
+    for (int k = 1; k < 4; ++k) {
+        still.step(Follower::boundary(), a);
+        pushed.step(Follower::boundary(), b);
+        const Points expected = a.x.rowwise() + k * h * push.transpose();
+        EXPECT_LT((b.x - expected).rowwise().norm().maxCoeff(), 1e-6) << k;
+    }
+}
+
 TEST(EmbeddedStepper, NoFineVertexIsInsideAndTheReportSaysWhatIsShown) {
     Follower follower;
     ClothState state = ClothState::at_rest(follower.fine);

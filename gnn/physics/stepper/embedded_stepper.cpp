@@ -91,8 +91,11 @@ std::string EmbeddedStepper::name() const {
     return m_stepper->name() + "~" + std::to_string(m_proxy->vertex_count());
 }
 
-bool EmbeddedStepper::is_carried(const ClothState& state) const {
-    return same_points(state.x, m_shown.x) && same_points(state.v, m_shown.v);
+/// Gives the proxy what the fine velocities (|V| x 3, m/s) were given since the last step.
+void EmbeddedStepper::push(const Points& v) {
+    if (same_points(v, m_shown.v)) return;
+    m_state.v += of_proxy(v - m_shown.v);
+    m_shown.v = v;
 }
 
 void EmbeddedStepper::derive(const ClothState& state) {
@@ -130,7 +133,10 @@ void EmbeddedStepper::take_boundary(const Boundary& boundary) {
 
 StepReport EmbeddedStepper::step(const Boundary& boundary, double dt, ClothState& state) {
     if (!is_valid_step(*m_fine, state, boundary, dt)) return StepReport::failed();
-    if (!is_carried(state)) derive(state);
+    if (same_points(state.x, m_shown.x))
+        push(state.v);
+    else
+        derive(state);
     take_boundary(boundary);
     ClothState next = m_state;
     next.time = state.time;

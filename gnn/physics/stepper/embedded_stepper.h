@@ -31,8 +31,9 @@ struct EmbeddedStepperSettings {
 /// and its velocities are its motion over the step. It has no motion of its own: wrinkles finer
 /// than the proxy's edges are not there.
 ///
-/// The proxy's state is carried from step to step, as long as the fine state is what this stepper
-/// returned last. For any other state, the first one among them, it is derived: the proxy's places
+/// The proxy's state is carried from step to step, as long as the fine positions are what this
+/// stepper returned last; what was done to their velocities is done to the proxy's. For any other
+/// state, the first one among them, it is derived: the proxy's places
 /// over the fine mesh say where it is and how it moves. What the proxy cannot show of that state,
 /// such as fine wrinkles, is kept as an offset and fades, so that nothing jumps.
 ///
@@ -73,7 +74,7 @@ class EmbeddedStepper : public Stepper {
     };
 
     void find_pins();
-    bool is_carried(const ClothState& state) const;
+    void push(const Points& v);
     void derive(const ClothState& state);
     void take_boundary(const Boundary& boundary);
     Points of_proxy(const Points& fine) const;
