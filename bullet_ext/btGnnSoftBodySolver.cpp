@@ -229,6 +229,7 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
         m_settings.friction == btGnnFriction::bullet);
     joinGoals(body, entry);
     entry.step->setRoot(entry.root);
+    applyDetail(body, entry);
     entry.handover.end(body);
     if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
@@ -409,6 +410,28 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
 
+void btGnnSoftBodySolver::setDetail(btSoftBody* body, const btGnnDetail& detail) {
+    if (!body) throw ArgumentError("setDetail()", "the soft body is null", "create it first");
+    const std::string name = cloth::softBodyName(*body) + ": btGnnDetail.";
+    cloth::check_range(name + "iterations", detail.iterations, 0, 1000);
+    cloth::check_range(name + "worldSteps", detail.worldSteps, 1, 8);
+    Entry& entry = m_entries[body];
+    entry.detail = detail;
+    if (entry.step) applyDetail(*body, entry);
+}
+
+void btGnnSoftBodySolver::applyDetail(const btSoftBody& body, Entry& entry) {
+    const bool limited = entry.detail.iterations > 0;
+    cloth::Stepper& stepper = entry.step->stepper();
+    const bool known = stepper.set_max_iterations(limited ? entry.detail.iterations
+                                                          : std::numeric_limits<int>::max());
+    if (limited && !known)
+        say(cloth::softBodyName(body) + ": its stepper " + stepper.name() +
+            " has no iterations that setDetail() could limit. Remedy: give it another stepper, or "
+            "a longer cloth step by btGnnDetail::worldSteps");
+    entry.step->setRate(entry.detail.worldSteps);
+}
+
 void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower) {
     if (!body) throw ArgumentError("follow()", "the soft body is null", "create it first");
     if (follower && follower->simulated_size() != body->m_nodes.size())
@@ -491,7 +514,7 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_h = static_cast<double>(solverdt);
     m_obstacles.beginStep(m_h);
     m_status.clothBodies = m_status.bulletBodies = 0;
-    m_status.sleepingBodies = m_status.frozenBodies = 0;
+    m_status.sleepingBodies = m_status.frozenBodies = m_status.carriedBodies = 0;
     m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
     m_status.nodesInIgnoredLimbs = 0;
     m_status.times = {};
@@ -517,6 +540,12 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             entry.handover.afterStep(body, static_cast<double>(solverdt));
         }
         if (entry.stepping != Stepping::cloth) continue;
+        if (!entry.detail.stepped) {
+            ++m_status.carriedBodies;
+            entry.step->carry(m_h);
+            showFollower(body, entry);
+            continue;
+        }
         if (limited)
             entry.step->setDeadline(cloth::Deadline::in(deadline.left() / std::max(1, waiting--)));
         const Stepped cloth{&body, &entry};
@@ -534,8 +563,14 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
 int btGnnSoftBodySolver::activeCloth() const {
     int count = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
-        count += steppingOf(m_softBodySet[i]) == Stepping::cloth && m_softBodySet[i]->isActive();
+        count += isStepped(m_softBodySet[i]) && m_softBodySet[i]->isActive();
     return count;
+}
+
+bool btGnnSoftBodySolver::isStepped(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() && it->second.stepping == Stepping::cloth &&
+           it->second.detail.stepped;
 }
 
 /// The rest of a world step that has begun. A body may take several cloth steps in it: they are

@@ -61,6 +61,7 @@ class EmbeddedStepper : public Stepper {
     bool is_independent() const override { return m_stepper->is_independent(); }
     /// Of the proxy's step: what the fine garment takes comes on top.
     bool set_max_ms(double ms) override { return m_stepper->set_max_ms(ms); }
+    bool set_max_iterations(int most) override { return m_stepper->set_max_iterations(most); }
     const std::vector<LimbSet>& ignored_limbs() const override { return m_ignored; }
 
     const Garment& proxy() const { return *m_proxy; }
