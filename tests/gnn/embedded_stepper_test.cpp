@@ -202,6 +202,29 @@ TEST(EmbeddedStepper, NoFineVertexIsInsideAndTheReportSaysWhatIsShown) {
     EXPECT_LT(state.x.col(1).minCoeff(), -0.1) << "it does not drape";
 }
 
+TEST(EmbeddedStepper, VerticesAloneAreKeptOutIfAsked) {
+    EmbeddedStepperSettings settings;
+    settings.surface = false;
+    Follower follower({}, {}, settings), whole;
+    ClothState state = ClothState::at_rest(follower.fine), other = state;
+    Boundary boundary = Follower::boundary();
+    boundary.obstacles.push_back(sphere({0.02, -0.03, 0.01}, 0.02));
+    Proximity proximity;
+    double deepest = 0.0, deepest_whole = 0.0;
+    for (int k = 0; k < 20; ++k) {
+        const StepReport report = follower.step(boundary, state);
+        whole.step(boundary, other);
+        ASSERT_LE(depth_of(boundary, state.x), 0.0) << k;
+        EXPECT_EQ(report.max_penetration, 0.0) << k;
+        const auto depth = [&](const Points& x) {
+            return measure_penetration(proximity, boundary, follower.fine, x).max_depth;
+        };
+        deepest = std::max(deepest, depth(state.x));
+        deepest_whole = std::max(deepest_whole, depth(other.x));
+    }
+    EXPECT_GT(deepest, deepest_whole) << "of edges and faces";
+}
+
 TEST(EmbeddedStepper, IgnoredSolidsArePassedThroughAndReported) {
     Follower follower;
     ClothState state = ClothState::at_rest(follower.fine);

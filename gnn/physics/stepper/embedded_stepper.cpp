@@ -20,6 +20,12 @@ const EmbeddedStepperSettings& checked(const EmbeddedStepperSettings& settings) 
     return settings;
 }
 
+ContactProjectionSettings projection_of(const EmbeddedStepperSettings& settings) {
+    ContactProjectionSettings projection;
+    if (!settings.surface) projection.iterations = 0;
+    return projection;
+}
+
 const Garment& given(const std::shared_ptr<const Garment>& proxy, const Garment& fine) {
     if (!proxy)
         throw ArgumentError("EmbeddedStepper of " + fine.name(), "there is no proxy",
@@ -51,7 +57,7 @@ EmbeddedStepper::EmbeddedStepper(const Garment& fine, std::shared_ptr<const Garm
       m_places(given(m_proxy, fine).rest(), fine.rest(), settings.embedding),
       m_proxy_places(fine.rest(), m_proxy->rest(), settings.embedding),
       m_proximity(settings.proximity),
-      m_contact_projection(fine),
+      m_contact_projection(fine, projection_of(settings)),
       m_goal_projection(fine) {
     if (!m_stepper)
         throw ArgumentError("EmbeddedStepper of " + fine.name(), "the proxy has no stepper",

@@ -14,8 +14,10 @@ namespace cloth {
 
 struct EmbeddedStepperSettings {
     MeshEmbeddingSettings embedding;
-    double fade = 0.1;  ///< time in which what the proxy cannot show of a state that it is given
-                        ///< fades to a third (s), 0 to 10; 0: at once
+    double fade = 0.1;    ///< time in which what the proxy cannot show of a state that it is given
+                          ///< fades to a third (s), 0 to 10; 0: at once
+    bool surface = true;  ///< edges and faces of the fine garment are kept out of obstacles, too;
+                          ///< false: vertices alone, and max_penetration is theirs. That costs less
     ProximitySettings proximity;  ///< of the fine garment
 };
 
