@@ -31,7 +31,8 @@ struct EmbeddedStepperSettings {
 /// The fine garment is where its places over the proxy are (MeshEmbedding). Then contact projection
 /// and goal projection move it as they do at the end of any step, its pins are at their targets,
 /// and its velocities are its motion over the step. It has no motion of its own: wrinkles finer
-/// than the proxy's edges are not there.
+/// than the proxy's edges are not there, and it does not keep off itself: the proxy does, if its
+/// stepper has self-contact.
 ///
 /// The proxy's state is carried from step to step, as long as the fine positions are what this
 /// stepper returned last; what was done to their velocities is done to the proxy's. For any other
