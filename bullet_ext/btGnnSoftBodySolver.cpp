@@ -5,8 +5,10 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
+#include "bullet_ext/bodyFollower.h"
 #include "bullet_ext/bodyGoals.h"
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/rootMotion.h"
@@ -227,6 +229,7 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
         m_settings.friction == btGnnFriction::bullet);
     joinGoals(body, entry);
     entry.step->setRoot(entry.root);
+    applyDetail(body, entry);
     entry.handover.end(body);
     if (body.getActivationState() == ISLAND_SLEEPING) body.activate();
     entry.stepping = Stepping::cloth;
@@ -407,6 +410,65 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
 
+void btGnnSoftBodySolver::setDetail(btSoftBody* body, const btGnnDetail& detail) {
+    if (!body) throw ArgumentError("setDetail()", "the soft body is null", "create it first");
+    const std::string name = cloth::softBodyName(*body) + ": btGnnDetail.";
+    cloth::check_range(name + "iterations", detail.iterations, 0, 1000);
+    cloth::check_range(name + "worldSteps", detail.worldSteps, 1, 8);
+    Entry& entry = m_entries[body];
+    entry.detail = detail;
+    if (entry.step) applyDetail(*body, entry);
+}
+
+void btGnnSoftBodySolver::applyDetail(const btSoftBody& body, Entry& entry) {
+    const bool limited = entry.detail.iterations > 0;
+    cloth::Stepper& stepper = entry.step->stepper();
+    const bool known = stepper.set_max_iterations(limited ? entry.detail.iterations
+                                                          : std::numeric_limits<int>::max());
+    if (limited && !known)
+        say(cloth::softBodyName(body) + ": its stepper " + stepper.name() +
+            " has no iterations that setDetail() could limit. Remedy: give it another stepper, or "
+            "a longer cloth step by btGnnDetail::worldSteps");
+    entry.step->setRate(entry.detail.worldSteps);
+}
+
+void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower) {
+    if (!body) throw ArgumentError("follow()", "the soft body is null", "create it first");
+    if (follower && follower->simulated_size() != body->m_nodes.size())
+        throw ArgumentError(cloth::softBodyName(*body) + ": follow()",
+                            "the follower is of " + std::to_string(follower->simulated_size()) +
+                                " vertices, the body has " + std::to_string(body->m_nodes.size()) +
+                                " nodes",
+                            "make it for the mesh of the body, garmentOf(body)->rest()");
+    Entry& entry = m_entries[body];
+    entry.follower = std::move(follower);
+    if (entry.follower) entry.follower->show(cloth::nodePositions(*body), {}, {});
+}
+
+const cloth::Follower* btGnnSoftBodySolver::followerOf(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() ? it->second.follower.get() : nullptr;
+}
+
+void btGnnSoftBodySolver::showFollower(const btSoftBody& body, Entry& entry) {
+    if (!entry.follower) return;
+    if (entry.follower->simulated_size() != body.m_nodes.size()) {
+        entry.follower.reset();
+        return say(cloth::softBodyName(body) +
+                   ": its nodes were changed, so the mesh that follows it stays where it is. "
+                   "Remedy: make one for the nodes of now, and call follow() with it");
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    const bool isCloth = entry.stepping == Stepping::cloth;
+    static const std::vector<cloth::LimbSet> none;
+    cloth::showFollower(body, cloth::nodePositions(body),
+                        isCloth ? entry.step->stepper().ignored_limbs() : none, m_obstacles, m_h,
+                        *entry.follower);
+    const std::chrono::duration<double, std::milli> passed =
+        std::chrono::steady_clock::now() - begin;
+    m_status.times.contact += passed.count();
+}
+
 void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
                                    btGnnTeleport kind) {
     if (!body) throw ArgumentError("teleport()", "the soft body is null", "create it first");
@@ -428,6 +490,8 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (entry.step) entry.step->restart();
     body->updateNormals();
     body->updateBounds();
+    if (entry.follower && entry.follower->simulated_size() == body->m_nodes.size())
+        entry.follower->show(cloth::nodePositions(*body), {}, {});
     if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
 }
 
@@ -447,9 +511,10 @@ void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
 }
 
 void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
-    m_obstacles.beginStep(static_cast<double>(solverdt));
+    m_h = static_cast<double>(solverdt);
+    m_obstacles.beginStep(m_h);
     m_status.clothBodies = m_status.bulletBodies = 0;
-    m_status.sleepingBodies = m_status.frozenBodies = 0;
+    m_status.sleepingBodies = m_status.frozenBodies = m_status.carriedBodies = 0;
     m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
     m_status.nodesInIgnoredLimbs = 0;
     m_status.times = {};
@@ -475,6 +540,12 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             entry.handover.afterStep(body, static_cast<double>(solverdt));
         }
         if (entry.stepping != Stepping::cloth) continue;
+        if (!entry.detail.stepped) {
+            ++m_status.carriedBodies;
+            entry.step->carry(m_h);
+            showFollower(body, entry);
+            continue;
+        }
         if (limited)
             entry.step->setDeadline(cloth::Deadline::in(deadline.left() / std::max(1, waiting--)));
         const Stepped cloth{&body, &entry};
@@ -492,8 +563,14 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
 int btGnnSoftBodySolver::activeCloth() const {
     int count = 0;
     for (int i = 0; i < m_softBodySet.size(); ++i)
-        count += steppingOf(m_softBodySet[i]) == Stepping::cloth && m_softBodySet[i]->isActive();
+        count += isStepped(m_softBodySet[i]) && m_softBodySet[i]->isActive();
     return count;
+}
+
+bool btGnnSoftBodySolver::isStepped(const btSoftBody* body) const {
+    const auto it = m_entries.find(body);
+    return it != m_entries.end() && it->second.stepping == Stepping::cloth &&
+           it->second.detail.stepped;
 }
 
 /// The rest of a world step that has begun. A body may take several cloth steps in it: they are
@@ -532,6 +609,7 @@ void btGnnSoftBodySolver::finishStep(const Stepped& cloth) {
     }
     m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
     for (const std::string& trouble : troublesOf(body, result)) say(trouble);
+    showFollower(body, entry);
     if (entry.failures >= m_settings.maxFailedSteps)
         giveUp(body, entry,
                "its stepper " + entry.step->stepper().name() + " failed " +
@@ -546,9 +624,12 @@ void btGnnSoftBodySolver::giveUp(btSoftBody& body, Entry& entry, const std::stri
 }
 
 void btGnnSoftBodySolver::updateSoftBodies() {
-    for (int i = 0; i < m_softBodySet.size(); ++i)
-        if (steppingOf(m_softBodySet[i]) == Stepping::bullet && m_softBodySet[i]->isActive())
-            m_softBodySet[i]->integrateMotion();
+    for (int i = 0; i < m_softBodySet.size(); ++i) {
+        btSoftBody& body = *m_softBodySet[i];
+        if (steppingOf(&body) != Stepping::bullet || !body.isActive()) continue;
+        body.integrateMotion();
+        showFollower(body, m_entries[&body]);
+    }
 }
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body,

@@ -13,6 +13,7 @@
 
 #include "bullet_ext/bulletHandover.h"
 #include "bullet_ext/bulletObstacles.h"
+#include "data/core/follower.h"
 #include "data/core/garment.h"
 #include "gnn/stepper.h"
 
@@ -59,6 +60,18 @@ struct btGnnSolverSettings {
     double maxMs = std::numeric_limits<double>::infinity();
 };
 
+/// How much a body's cloth may cost: level of detail. See setDetail().
+struct btGnnDetail {
+    int iterations = 0;   ///< of each step, or part of one, at most, 1 to 1000; 0: as many as its
+                          ///< stepper takes
+    int worldSteps = 1;   ///< that a cloth step is long, 1 to 8; the nodes are interpolated
+    bool stepped = true;  ///< false: it keeps its shape, and is carried along as a whole
+
+    static btGnnDetail full() { return {}; }                  ///< near
+    static btGnnDetail reduced() { return {3, 2, true}; }     ///< far
+    static btGnnDetail offScreen() { return {0, 1, false}; }  ///< not seen
+};
+
 struct btGnnSolverMessage {
     std::string text;  ///< names the soft body, the problem and the remedy
     int count = 1;     ///< how often it was said
@@ -66,15 +79,17 @@ struct btGnnSolverMessage {
 
 /// What the solver is doing; read it when you like, nothing in it has to be handled.
 struct btGnnSolverStatus {
-    int clothBodies = 0;          ///< stepped by a Stepper in the last world step
-    int bulletBodies = 0;         ///< stepped by Bullet's own code
-    int sleepingBodies = 0;       ///< of the cloth bodies, those that rest and cost nothing
-    int frozenBodies = 0;         ///< not stepped at all: positions, velocities or masses
-                                  ///< of their nodes are not finite
-    long steps = 0;               ///< calls of Stepper::step() so far
-    long failedSteps = 0;         ///< those that failed
-    long cutSteps = 0;            ///< those that were taken in parts, see cloth::ClothStepper
-    long shortenedSteps = 0;      ///< those that btGnnSolverSettings::maxMs ended early
+    int clothBodies = 0;      ///< stepped by a Stepper in the last world step
+    int bulletBodies = 0;     ///< stepped by Bullet's own code
+    int sleepingBodies = 0;   ///< of the cloth bodies, those that rest and cost nothing
+    int carriedBodies = 0;    ///< of the cloth bodies, those that btGnnDetail::stepped keeps from
+                              ///< being stepped
+    int frozenBodies = 0;     ///< not stepped at all: positions, velocities or masses
+                              ///< of their nodes are not finite
+    long steps = 0;           ///< calls of Stepper::step() so far
+    long failedSteps = 0;     ///< those that failed
+    long cutSteps = 0;        ///< those that were taken in parts, see cloth::ClothStepper
+    long shortenedSteps = 0;  ///< those that btGnnSolverSettings::maxMs ended early
     double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle, as the last world step
                                   ///< shows both (m); limbs that it ignores do not count
     /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
@@ -187,6 +202,41 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// @throws cloth::ArgumentError if the body is null or a number is not finite
     void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
                        double duration = 0.0);
+    /// How much a body's cloth may cost from now on; switch it whenever you like: nothing jumps.
+    ///
+    ///     solver.setDetail(shirt, distance < 10 ? btGnnDetail::full() : btGnnDetail::reduced());
+    ///
+    /// - Fewer iterations: softer and more damped cloth. XPBD, Bullet's cloth and Newton's method
+    ///   take no notice, with a message.
+    /// - Longer cloth steps foresee obstacles, pins and goals by their velocities, damp more, and
+    ///   are cut where something moves fast. Steppers with a time step of their own that is about
+    ///   as long keep to it. Cloth that a dynamic body hangs on is stepped with the world.
+    /// - Cloth that is not stepped moves with its root (setRootMotion()), or else as far as the
+    ///   mean of its goals, or of its pins; pins stay exact. Stepped again, it goes on from there
+    ///   with the velocity of that motion. Skin may have moved into it: teleport() by
+    ///   btGnnTeleport::reset puts it on its goals.
+    ///
+    /// A proxy is a matter of attach(): with a stepper that embeds the body's own mesh in one (see
+    /// cloth::EmbeddedStepper) the nodes go on from where they are.
+    /// @throws cloth::ArgumentError if the body is null or a value is out of range
+    void setDetail(btSoftBody* body, const btGnnDetail& detail);
+    /// Lets something follow a body's nodes, such as the mesh to be drawn where the soft body is a
+    /// coarse proxy of it, see cloth::EmbeddedMesh and cloth::make_proxy():
+    ///
+    ///     auto drawn = std::make_shared<cloth::EmbeddedMesh>(coarse.rest(), fine.rest());
+    ///     solver.follow(shirt, drawn);
+    ///     world.stepSimulation(dt);
+    ///     draw(drawn->vertices(), drawn->normals(), drawn->faces());
+    ///
+    /// It is shown the nodes and all obstacles now, after teleport(), and after each world step in
+    /// which the body is not asleep, Bullet's own steps too. Moving, scaling and new pins are
+    /// followed. It ends when the number of nodes changes, as by a cut, with a message, and when
+    /// the body leaves the world. It counts in the times of contact, but not for maxMs.
+    /// @param follower  of as many vertices as the body has nodes, in their order; null: no more
+    /// @throws cloth::ArgumentError if the body is null or the follower is of another number
+    void follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower);
+    /// What follows a body; null: nothing does, or it has ended.
+    const cloth::Follower* followerOf(const btSoftBody* body) const;
     /// Moves a body at once, without what cloth does when it is dragged there: where its character
     /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
     ///
@@ -222,6 +272,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         std::optional<cloth::GoalLimits> limits;      ///< by the user
         std::shared_ptr<cloth::RootMotion> root;      ///< null: nobody asked for it
         std::shared_ptr<cloth::BodyGoals> goals;      ///< null: nobody asked for goals
+        std::shared_ptr<cloth::Follower> follower;    ///< null: nobody asked for one
+        btGnnDetail detail;
         cloth::BulletHandover handover;
         size_t topology = 0;
         std::vector<double> restLengths;  ///< of its links at the last step (m)
@@ -246,6 +298,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     const std::shared_ptr<cloth::BodyGoals>& goalsOf(const btSoftBody& body, Entry& entry);
     void joinGoals(btSoftBody& body, Entry& entry);
     cloth::RootMotion& rootOf(Entry& entry);
+    void applyDetail(const btSoftBody& body, Entry& entry);
+    bool isStepped(const btSoftBody* body) const;
+    void showFollower(const btSoftBody& body, Entry& entry);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;
@@ -254,5 +309,6 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     btGnnSolverSettings m_settings;
     btGnnSolverStatus m_status;
     cloth::BulletObstacles m_obstacles;
+    double m_h = 0.0;  ///< the last world step (s)
     std::map<const btSoftBody*, Entry> m_entries;
 };

@@ -21,6 +21,10 @@ Pose RootMotion::at(double time) const {
     return stands ? m_to : interpolate(m_from, m_to, time / m_duration);
 }
 
+Pose RootMotion::motion() const {
+    return at(m_end) * at(m_begin).inverse();
+}
+
 Pose RootMotion::carry(const TimeSpan& span) const {
     if (m_linear == 1.0 && m_angular == 1.0) return Pose::Identity();
     const Pose from = at(m_begin + span.begin), to = at(m_begin + span.begin + span.length);

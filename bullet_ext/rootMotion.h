@@ -18,6 +18,9 @@ class RootMotion {
 
     /// Starts a world step of h seconds.
     void beginStep(double h);
+    bool given() const { return m_given; }
+    /// What takes the root from the start of the present world step to its end.
+    Pose motion() const;
     /// What carries the cloth in a part of the time axis, counted from the start of the present
     /// world step. Nothing: the identity, bit for bit.
     Pose carry(const TimeSpan& span) const;

@@ -282,7 +282,7 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
     m_continues = goes_on;
     m_cloth_step.from = goes_on ? m_cloth_step.to : m_shown;
     m_cloth_step.begin = goes_on ? m_cloth_step.begin + m_cloth_step.length : 0.0;
-    m_cloth_step.length = looksAhead() ? m_stepper->fixed_dt() : m_h - m_cloth_step.begin;
+    m_cloth_step.length = clothStepLength();
     if (!m_prepared) m_stepper->prepare(m_cloth_step.length);
     m_prepared = true;
     m_cloth_step.valid = true;
@@ -292,14 +292,63 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
         m_cloth_step.from.x.row(pins[p]) = pins_now.row(static_cast<Eigen::Index>(p));
 }
 
+double SoftBodyStep::clothStepLength() const {
+    const double own = looksAhead() ? m_stepper->fixed_dt() : m_h - m_cloth_step.begin;
+    const bool may_be_longer = m_rate > 1 && m_stepper->accepts_any_dt() && !hangsOnDynamicBody();
+    // A step of its own length that is nearly as long is better: a network is made for it.
+    return may_be_longer && m_rate * m_h > 1.5 * own ? m_rate * m_h : own;
+}
+
+bool SoftBodyStep::hangsOnDynamicBody() const {
+    for (int a = 0; a < m_body.m_anchors.size(); ++a)
+        if (isHardAnchor(m_body.m_anchors[a]) && isDynamic(*m_body.m_anchors[a].m_body))
+            return true;
+    return false;
+}
+
 /// A body that hangs on the cloth, and is pulled by it, cannot be foreseen.
 bool SoftBodyStep::looksAhead() const {
     if (!(m_stepper->fixed_dt() > 0.0)) return false;
-    if (!m_stepper->accepts_any_dt()) return true;
-    for (int a = 0; a < m_body.m_anchors.size(); ++a)
-        if (isHardAnchor(m_body.m_anchors[a]) && isDynamic(*m_body.m_anchors[a].m_body))
-            return false;
-    return true;
+    return !m_stepper->accepts_any_dt() || !hangsOnDynamicBody();
+}
+
+Pose SoftBodyStep::carryingMotion() const {
+    Pose motion = Pose::Identity();
+    if (m_root && m_root->given()) return m_root->motion();
+    const auto mean = [](const Points& x) -> Vec3 { return x.colwise().mean(); };
+    if (m_goals && m_goals->given()) {
+        const SkinGoals goals = m_goals->during({0.0, m_world_h});
+        motion.translation() = mean(goals.x1) - mean(goals.x0);
+    } else if (m_pins_after.rows() > 0) {
+        motion.translation() = mean(m_pins_after) - mean(m_pins_before);
+    }
+    return motion;
+}
+
+void SoftBodyStep::carry(double h) {
+    m_time_scale = static_cast<double>(m_body.m_cfg.timescale);
+    m_world_h = h;
+    m_h = h * m_time_scale;
+    m_result = Result();
+    m_begun = false;
+    if (m_goals) m_goals->beginStep(h);
+    if (m_root) m_root->beginStep(h);
+    if (m_body.m_nodes.size() != m_shown.x.rows() || !(m_h > 0.0)) return;
+    restoreNodes();
+    takeConstants();
+    takeNodes();
+    takePins();
+    for (int i = 0; i < m_body.m_nodes.size(); ++i) m_body.m_nodes[i].m_f.setZero();
+    m_impulse.setZero();
+    const Points before = m_shown.x;
+    m_shown.x = transformed(before, carryingMotion());
+    const std::vector<int>& pins = m_garment->pins();
+    for (size_t p = 0; p < pins.size(); ++p)
+        m_shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
+    m_shown.v = (m_shown.x - before) / m_h;
+    m_cloth_step.valid = false;
+    m_depth = 0.0;
+    writeNodes();
 }
 
 bool SoftBodyStep::beginClothStep(BulletObstacles& obstacles) {

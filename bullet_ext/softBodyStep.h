@@ -50,6 +50,16 @@ class SoftBodyStep {
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
+    /// World steps that a cloth step is long, where its stepper takes steps of any length; the
+    /// nodes are interpolated. From the next cloth step on.
+    void setRate(int world_steps) {
+        m_prepared = m_prepared && m_rate == world_steps;
+        m_rate = world_steps;
+    }
+    Stepper& stepper() { return *m_stepper; }
+    /// A world step of h seconds in which the cloth is not stepped, but carried along as a whole:
+    /// by its root, or by the means of its goals or pins. It then goes on from there.
+    void carry(double h);
     /// Limits the time of the cloth steps of the next step(), see Stepper::set_max_ms().
     void setDeadline(const Deadline& deadline) { m_deadline = deadline; }
     const StepReport& lastReport() const { return m_report; }
@@ -118,6 +128,9 @@ class SoftBodyStep {
     void startClothStep(bool first_of_step);
     void carryClothStep();
     bool looksAhead() const;
+    bool hangsOnDynamicBody() const;
+    double clothStepLength() const;
+    Pose carryingMotion() const;
     void slowDown(BulletObstacles& obstacles);
     void showClothStep();
     void writeNodes();
@@ -151,6 +164,7 @@ class SoftBodyStep {
     Boundary m_boundary;        ///< of the present cloth step
     ClothState m_solved;        ///< its end, as the stepper has it
     bool m_hang = false;        ///< it is solved together with bodies on anchors
+    int m_rate = 1;             ///< world steps in a cloth step
     bool m_prepared = false;    ///< the stepper knows how long its steps are
     StepSpan m_cloth_step;
     ClothState m_shown;    ///< what the nodes say, in doubles

@@ -110,6 +110,14 @@ class Stepper {
         return false;
     }
 
+    /// Limits the solver iterations of each step, or part of a step, from now on (1 or more), where
+    /// its settings ask for more: how cloth that is far away costs less.
+    /// @return  false: this stepper takes those that it takes
+    virtual bool set_max_iterations(int most) {
+        (void)most;
+        return false;
+    }
+
     /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
     /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "collision/response/resolve.h"
+#include "data/core/follower.h"
 #include "data/core/mesh_embedding.h"
 
 namespace cloth {
@@ -24,7 +25,7 @@ struct EmbeddedMeshSettings {
 ///     draw(shirt.vertices(), shirt.normals(), shirt.faces());
 ///
 /// It has no motion of its own: wrinkles finer than the coarse edges are not there.
-class EmbeddedMesh {
+class EmbeddedMesh : public Follower {
  public:
     /// @param simulated  at rest (m)
     /// @param fine       in the same place (m)
@@ -40,6 +41,12 @@ class EmbeddedMesh {
     /// @throws ArgumentError if the number of vertices is not that of the simulated mesh
     ResolveReport follow(const Points& simulated, const Boundary& boundary,
                          const std::vector<LimbSet>& ignored = {});
+
+    Eigen::Index simulated_size() const override { return m_embedding.coarse_size(); }
+    void show(const Points& simulated, const Boundary& boundary,
+              const std::vector<LimbSet>& ignored) override {
+        follow(simulated, boundary, ignored);
+    }
 
     const Points& vertices() const { return m_x; }  ///< N x 3 (m); at first those at rest
     const Faces& faces() const { return m_faces; }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +27,7 @@ using VertexIndex = SurfaceMesh::Vertex_index;
 constexpr double kGoodGarmentAngle = 25.0;  // degrees at which the smoothing stops
 constexpr int kFirstRounds = 5;             // at least: the remesher leaves the borders wavy
 constexpr int kSmoothingRounds = 60;
+constexpr double kKeptSpacing = 0.9;  // of vertices that are kept (edge lengths)
 
 SurfaceMesh to_cgal(const TriMesh& mesh) {
     SurfaceMesh result;
@@ -85,6 +87,8 @@ class Curve {
     }
 
     double length() const { return m_lengths.back(); }
+    /// Where along the curve a vertex of the loop is (m).
+    double place(size_t index) const { return m_lengths[index]; }
 
     Vec3 at(double s) const {
         s -= std::floor(s / length()) * length();
@@ -111,9 +115,37 @@ class Curve {
     std::vector<double> m_lengths;
 };
 
+/// Moves equally spaced places on a curve so that some of them are at the places in `kept`, those
+/// between them equally spaced again. A place that two of `kept` are nearest to goes to the first.
+void keep_places(const std::vector<double>& kept, double length, std::vector<double>& places) {
+    const auto count = static_cast<int>(places.size());
+    const double step = length / count;
+    std::map<int, double> fixed;  // of places: how far they move
+    for (const double s : kept) {
+        const double index = std::round((s - places[0]) / step);
+        const int k = static_cast<int>(index - std::floor(index / count) * count);
+        double shift = s - places[static_cast<size_t>(k)];
+        shift -= std::round(shift / length) * length;
+        fixed.emplace(k, shift);
+    }
+    if (fixed.empty()) return;
+    for (auto from = fixed.begin(); from != fixed.end(); ++from) {
+        const auto next = std::next(from);
+        const bool around = next == fixed.end();
+        const auto& [last, last_shift] = around ? *fixed.begin() : *next;
+        const int gap = last + (around ? count : 0) - from->first;
+        for (int k = 0; k < gap; ++k) {
+            const double t = static_cast<double>(k) / gap;
+            places[static_cast<size_t>((from->first + k) % count)] +=
+                (1.0 - t) * from->second + t * last_shift;
+        }
+    }
+}
+
 /// The remesher lets borders shrink: puts the vertices of `loop` back on the curve that it came
 /// from, equally spaced, moving them as little along it as possible.
-void restore_border(Points& vertices, const std::vector<int>& loop, const Curve& curve) {
+void restore_border(Points& vertices, const std::vector<int>& loop, const Curve& curve,
+                    const std::vector<double>& kept) {
     const double step = curve.length() / static_cast<double>(loop.size());
     double cosine = 0.0, sine = 0.0;  // circular mean of where the first vertex should be
     for (size_t i = 0; i < loop.size(); ++i) {
@@ -122,14 +154,26 @@ void restore_border(Points& vertices, const std::vector<int>& loop, const Curve&
         sine += std::sin(2.0 * M_PI * s / curve.length());
     }
     const double first = std::atan2(sine, cosine) / (2.0 * M_PI) * curve.length();
+    std::vector<double> places(loop.size());
+    for (size_t i = 0; i < loop.size(); ++i) places[i] = first + static_cast<double>(i) * step;
+    keep_places(kept, curve.length(), places);
     for (size_t i = 0; i < loop.size(); ++i)
-        vertices.row(loop[i]) = curve.at(first + static_cast<double>(i) * step).transpose();
+        vertices.row(loop[i]) = curve.at(places[i]).transpose();
 }
 
-void restore_borders(TriMesh& mesh, const TriMesh& original) {
+void restore_borders(TriMesh& mesh, const TriMesh& original, const std::vector<int>& kept) {
     std::vector<Curve> curves;
-    for (const std::vector<int>& loop : boundary_loops(original.faces))
+    std::vector<std::vector<double>> kept_places;  // of each curve
+    for (const std::vector<int>& loop : boundary_loops(original.faces)) {
         curves.emplace_back(original.vertices, loop);
+        kept_places.emplace_back();
+        for (const int i : kept) {
+            const auto at = std::find(loop.begin(), loop.end(), i);
+            if (at != loop.end())
+                kept_places.back().push_back(
+                    curves.back().place(static_cast<size_t>(at - loop.begin())));
+        }
+    }
     for (const std::vector<int>& loop : boundary_loops(mesh.faces)) {
         const auto gap = [&](const Curve& curve) {
             double sum = 0.0;
@@ -139,14 +183,14 @@ void restore_borders(TriMesh& mesh, const TriMesh& original) {
         const auto curve =
             std::min_element(curves.begin(), curves.end(),
                              [&](const Curve& c, const Curve& d) { return gap(c) < gap(d); });
-        restore_border(mesh.vertices, loop, *curve);
+        restore_border(mesh.vertices, loop, *curve,
+                       kept_places[static_cast<size_t>(curve - curves.begin())]);
     }
 }
 
 /// Moves inner vertices towards the area-weighted mean of the centroids of their triangles and back
 /// onto the surface.
-void smooth_inside(TriMesh& mesh, const std::vector<char>& on_border,
-                   const SurfaceDistance& surface) {
+void smooth_inside(TriMesh& mesh, const std::vector<char>& fixed, const SurfaceDistance& surface) {
     Points moment = Points::Zero(mesh.vertices.rows(), 3);
     VectorX weight = VectorX::Zero(mesh.vertices.rows());
     const VectorX areas = face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm();
@@ -161,7 +205,7 @@ void smooth_inside(TriMesh& mesh, const std::vector<char>& on_border,
         }
     }
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
-        if (!on_border[static_cast<size_t>(i)])
+        if (!fixed[static_cast<size_t>(i)])
             mesh.vertices.row(i) =
                 surface.nearest(moment.row(i).transpose() / weight[i]).point.transpose();
 }
@@ -173,12 +217,46 @@ std::vector<char> border_flags(const TriMesh& mesh) {
     return flags;
 }
 
+/// Those of the vertices that are not too near to an earlier one.
+std::vector<int> spaced(const Points& vertices, const std::vector<int>& kept, double distance) {
+    std::vector<int> result;
+    for (const int i : kept) {
+        const bool near = std::any_of(result.begin(), result.end(), [&](int other) {
+            return (vertices.row(other) - vertices.row(i)).norm() < distance;
+        });
+        if (!near) result.push_back(i);
+    }
+    return result;
+}
+
+/// Moves the nearest vertex that is not fixed yet to each of `kept` that is not on a border, if it
+/// is nearer than `reach`, and fixes it.
+void keep_inside(TriMesh& mesh, const TriMesh& original, const std::vector<int>& kept, double reach,
+                 std::vector<char>& fixed) {
+    const std::vector<char> border = border_flags(original);
+    for (const int i : kept) {
+        if (border[static_cast<size_t>(i)]) continue;
+        Eigen::Index nearest = -1;
+        double best = reach;
+        for (Eigen::Index v = 0; v < mesh.vertices.rows(); ++v) {
+            const double distance = (mesh.vertices.row(v) - original.vertices.row(i)).norm();
+            if (fixed[static_cast<size_t>(v)] || !(distance < best)) continue;
+            best = distance;
+            nearest = v;
+        }
+        if (nearest < 0) continue;
+        mesh.vertices.row(nearest) = original.vertices.row(i);
+        fixed[static_cast<size_t>(nearest)] = 1;
+    }
+}
+
 }  // namespace
 
-TriMesh remesh(const TriMesh& surface, int target_vertices) {
+TriMesh remesh(const TriMesh& surface, int target_vertices, const std::vector<int>& kept) {
     const SurfaceDistance original(surface);
+    const double ideal = std::sqrt(2.0 / std::sqrt(3.0) * area(surface) / target_vertices);
     // The remesher's edges come out shorter than asked: 10 % more meets the number at once, mostly.
-    double edge_length = 1.1 * std::sqrt(2.0 / std::sqrt(3.0) * area(surface) / target_vertices);
+    double edge_length = 1.1 * ideal;
     TriMesh mesh;
     for (int attempt = 0; attempt < 8; ++attempt) {
         mesh = isotropic(surface, edge_length, 8);
@@ -186,12 +264,14 @@ TriMesh remesh(const TriMesh& surface, int target_vertices) {
         if (std::abs(ratio - 1.0) < 0.015) break;
         edge_length *= std::sqrt(ratio);
     }
-    restore_borders(mesh, surface);
-    const std::vector<char> on_border = border_flags(mesh);
+    const std::vector<int> apart = spaced(surface.vertices, kept, kKeptSpacing * ideal);
+    restore_borders(mesh, surface, apart);
+    std::vector<char> fixed = border_flags(mesh);
+    keep_inside(mesh, surface, apart, ideal, fixed);
     TriMesh best;
     double best_angle = -1.0;
     for (int round = 0; round < kSmoothingRounds && best_angle < kGoodGarmentAngle; ++round) {
-        smooth_inside(mesh, on_border, original);
+        smooth_inside(mesh, fixed, original);
         flip_edges(mesh);
         const double angle = smallest_angle(mesh);
         if (round < kFirstRounds || angle < best_angle) continue;

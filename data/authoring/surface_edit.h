@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "data/core/mesh.h"
 
 namespace cloth {
@@ -15,6 +17,9 @@ TriMesh keep_component(const TriMesh& mesh, const Vec3& p);
 /// can be: split, collapse, flip and relax (Botsch and Kobbelt 2004, CGAL), then smoothing within
 /// the surface until every angle is above 25 degrees, or as near as it gets.
 /// Borders stay where they are, with new vertices.
-TriMesh remesh(const TriMesh& surface, int target_vertices);
+/// @param kept  vertices of `surface` where the result has vertices, too, such as corners, the most
+///              important ones first. Those that are nearer than 0.9 edges to an earlier one, or
+///              for which there is no vertex left to take, are passed over
+TriMesh remesh(const TriMesh& surface, int target_vertices, const std::vector<int>& kept = {});
 
 }  // namespace cloth

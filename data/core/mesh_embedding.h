@@ -48,6 +48,10 @@ class MeshEmbedding {
     Eigen::Index coarse_size() const { return m_coarse_size; }
     /// The coarse vertices around a fine one.
     std::array<int, 3> corners(Eigen::Index fine) const;
+    /// Of the corners at its place in the face; they sum to 1.
+    const Vec3& weights(Eigen::Index fine) const {
+        return m_places[static_cast<size_t>(fine)].weights;
+    }
     /// How far the farthest fine vertex is from the coarse mesh at rest (m).
     double farthest() const { return m_farthest; }
 

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -30,7 +31,9 @@ using nlohmann::json;
 
 namespace {
 
-std::string work_file(const CompareOptions& options, const std::string& name) {
+/// Solvers may be named after files.
+std::string work_file(const CompareOptions& options, std::string name) {
+    std::replace(name.begin(), name.end(), '/', '_');
     return options.out + "/parts/" + name;
 }
 

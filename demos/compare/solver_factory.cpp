@@ -8,6 +8,7 @@
 #include "bullet_ext/bulletClothStepper.h"
 #include "data/core/paths.h"
 #include "demos/compare/arguments.h"
+#include "demos/compare/proxy_solver.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
@@ -189,7 +190,8 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
         "quasi-newton, quasi-newton-K, quasi-newton-KxS, xpbd-N or a network of " +
-        weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") + "), NAME or NAME+K");
+        weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
+        "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
 }
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
@@ -202,6 +204,12 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
             throw UsageError("solver " + name + ": knows no limit of its time");
         return stepper;
     }
+    const size_t tilde = name.find('~');
+    if (tilde != std::string::npos)
+        return make_proxy_solver(name, name.substr(tilde + 1), scene,
+                                 [&](const ComparisonScene& coarse) {
+                                     return make_solver(name.substr(0, tilde), coarse, settings);
+                                 });
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name, scene),
                                                     scene.segments());

@@ -43,7 +43,11 @@ struct SolverSettings {
 /// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
 /// They also take "@M": the same in M ms a step, see Stepper::set_max_ms().
 ///
-/// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights
+/// "SOLVER~N" simulates a proxy of about N vertices by SOLVER, and shows the garment following it;
+/// "SOLVER~GARMENT" another garment of the same cut, such as tshirt_1000: see make_proxy_solver().
+///
+/// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights,
+///         ArgumentError if the garment can have no such proxy
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);
 

@@ -77,6 +77,15 @@ std::vector<DataSet> data_sets() {
          "report.json",
          {},
          {}},
+        {"proxy",
+         figures + "proxy.json",
+         "OMP_NUM_THREADS=1 build/release/demos/compare --garment tshirt --motion 01_01 --frames 90"
+         " --reference-frames 90 --no-video --out OUT --solvers "
+         "quasi-newton,quasi-newton~1000,quasi-newton~tshirt_1000,small+3,small+3~1000,xpbd-40,"
+         "xpbd-40~1000",
+         "report.json",
+         {},
+         {}},
         {"speed_error",
          figures + "speed_error.json",
          "build/release/demos/speed_error --scene all --frames 30 --out OUT",

@@ -58,6 +58,25 @@ MarkdownTable whole_motion_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable proxy_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver",         "to the fine solution (mm)",
+                     "one step: gap",  "RMSE (mm)",
+                     "stretch: 99 %",  "longest edge",
+                     "trembling (mm)", "deepest point inside (mm)",
+                     "failure"};
+    for (const DataRow& row : files.at(0).rows("solvers"))
+        table.rows.push_back({row.text("/name"), decimals(row.number("/rollout/fine_rmse_mm"), 1),
+                              significant(row.number("/one_step/gap/median"), 2),
+                              decimals(row.number("/one_step/rmse_mm"), 1),
+                              decimals(row.number("/rollout/stretch/p99"), 3),
+                              decimals(row.number("/rollout/stretch/max"), 2),
+                              decimals(row.number("/rollout/jitter_mm"), 2),
+                              decimals(row.number("/rollout/penetration/max_mm"), 1),
+                              failure_of(row)});
+    return table;
+}
+
 MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
     static const char* const solvers[] = {"bullet-10x2",
                                           "bullet-10x8",

@@ -6,6 +6,8 @@ namespace cloth {
 
 /// Reports of `compare` and `speed_error`: one garment, all solvers.
 MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
+/// Solvers and what they do with a proxy, without times.
+MarkdownTable proxy_table(const std::vector<DataFile>& files);
 MarkdownTable speed_error_table(const std::vector<DataFile>& files);
 MarkdownTable which_solver_table(const std::vector<DataFile>& files);
 /// Cotton as it is measured.

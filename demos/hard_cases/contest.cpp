@@ -24,7 +24,13 @@ HardResult without_run(const HardRow& row) {
 
 void check_steppers(const std::vector<std::string>& steppers, const SolverSettings& solver) {
     const HardScene scrap(swing(level_sheet(60), {}), 1);
-    for (const std::string& name : steppers) make_solver(name, scrap, solver);
+    for (const std::string& name : steppers) {
+        try {
+            make_solver(name, scrap, solver);
+        } catch (const ArgumentError&) {
+            // The name is right, and refuses this scrap: each scene is asked on its own.
+        }
+    }
 }
 
 int scaled_frames(const HardCase& hard, double scale, int soak_frames) {

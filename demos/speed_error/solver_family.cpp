@@ -28,6 +28,15 @@ std::string take_limit(std::string& name) {
     return limit;
 }
 
+/// Takes "~PROXY" off the end; empty: it is not there.
+std::string take_proxy(std::string& name) {
+    const size_t at = name.find('~');
+    if (at == std::string::npos) return "";
+    const std::string proxy = name.substr(at + 1);
+    name.resize(at);
+    return proxy;
+}
+
 /// "K", in steps as shipped, or "KxS".
 SolverFamily bullet_family(const std::string& setting) {
     const size_t cross = setting.find('x');
@@ -52,6 +61,11 @@ SolverFamily solver_family(std::string solver) {
         family.setting += "@" + limit;
         return family;
     }
+    if (const std::string proxy = take_proxy(solver); !proxy.empty()) {
+        SolverFamily family = solver_family(solver);
+        family.name += ", proxy " + proxy;
+        return family;
+    }
     if (take_bdf2(solver)) {
         SolverFamily family = solver_family(solver);
         family.name += ", BDF2";
@@ -74,6 +88,7 @@ SolverFamily solver_family(std::string solver) {
 
 std::optional<NetworkFacts> network_facts(std::string solver, const SolverSettings& settings) {
     take_limit(solver);
+    take_proxy(solver);
     take_bdf2(solver);
     const SolverFamily family = solver_family(solver);
     if (family.kind != Kind::network) return std::nullopt;

@@ -8,6 +8,8 @@
 #include "bullet_ext/garmentSoftBody.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "collision/response/embedded_mesh.h"
+#include "data/authoring/make_proxy.h"
+#include "data/authoring/sheet.h"
 #include "data/body/garment_skinning.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
@@ -17,6 +19,7 @@
 #include "data/files/mesh_io.h"
 #include "data/files/point_cache_reader.h"
 #include "gnn/model/make_cloth.h"
+#include "gnn/physics/stepper/embedded_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
 
@@ -67,23 +70,46 @@ TEST_F(GuideSnippets, Limbs) {
 }
 
 TEST_F(GuideSnippets, AFineMeshFollowsTheSoftBody) {
+    solver.attach(body);
+    const cloth::Garment coarse = *solver.garmentOf(body);
+    const cloth::TriMesh fine = coarse.rest();
+    int drawings = 0;
+    const auto draw = [&](const cloth::Points& x, const cloth::Points& normals,
+                          const cloth::Faces&) { drawings += x.rows() == normals.rows(); };
+    solver.attach(body, coarse);
+    auto drawn = std::make_shared<cloth::EmbeddedMesh>(coarse.rest(), fine);
+    solver.follow(body, drawn);
+    world->stepSimulation(1.0f / 60, 0);
+    draw(drawn->vertices(), drawn->normals(), drawn->faces());
+    EXPECT_EQ(drawings, 1);
+    EXPECT_LT((drawn->vertices() - cloth::nodePositions(*body)).cwiseAbs().maxCoeff(), 1e-6);
+}
+
+TEST_F(GuideSnippets, LevelOfDetail) {
     expect_stepped();
-    const cloth::TriMesh fine = solver.garmentOf(body)->rest();
-    const cloth::TriMesh skin = cloth::load_garment_mesh("tshirt_1000");
-    const auto faces = std::make_shared<const cloth::Faces>(skin.faces);
-    const cloth::Points x1 = skin.vertices;
-    // Once: the garment as it is simulated, and the mesh to be drawn.
-    cloth::EmbeddedMesh drawn(solver.garmentOf(body)->rest(), fine);
-    // After each step: the skin as it is drawn, too, and the nodes.
-    cloth::Obstacle person;
-    person.faces = faces;
-    person.x0 = person.x1 = x1;
-    cloth::Boundary outside;
-    outside.obstacles = {person};
-    cloth::ClothState shown;
-    cloth::storeState(*body, shown);
-    drawn.follow(shown.x, outside, solver.stepperOf(body)->ignored_limbs());
-    EXPECT_LT((drawn.vertices() - shown.x).cwiseAbs().maxCoeff(), 1e-6);
+    for (const bool visible : {true, false}) {
+        const double distance = 20.0;
+        if (!visible)
+            solver.setDetail(body, btGnnDetail::offScreen());
+        else
+            solver.setDetail(body, distance < 10 ? btGnnDetail::full() : btGnnDetail::reduced());
+        world->stepSimulation(1.0f / 60, 0);
+        EXPECT_EQ(solver.status().carriedBodies, visible ? 0 : 1);
+    }
+}
+
+TEST_F(GuideSnippets, SimulateCoarseShowFine) {
+    const cloth::Garment shirt("sheet", cloth::make_sheet(1.0, 1.0, 3000),
+                               cloth::Fabric::soft_cotton());
+    cloth::ClothState state = cloth::ClothState::at_rest(shirt);
+    cloth::Boundary boundary;
+    boundary.pin_targets.resize(0, 3);
+    const double dt = 1.0 / 30.0;
+    const auto proxy = std::make_shared<const cloth::Garment>(cloth::make_proxy(shirt));
+    cloth::EmbeddedStepper stepper(shirt, proxy, cloth::make_cloth(*proxy));
+    const cloth::StepReport report = stepper.step(boundary, dt, state);  // of the shirt
+    EXPECT_TRUE(report.finite);
+    EXPECT_LT(state.x.col(1).maxCoeff(), -0.005);
 }
 
 TEST_F(GuideSnippets, PointsOfAnAnimationSystemOfYourOwn) {

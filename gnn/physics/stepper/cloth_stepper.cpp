@@ -105,6 +105,11 @@ bool ClothStepper::set_max_ms(double ms) {
     return m_solver->settings().minimiser != MinimiserKind::newton;
 }
 
+bool ClothStepper::set_max_iterations(int most) {
+    m_solver->set_max_iterations(most);
+    return m_solver->settings().minimiser != MinimiserKind::newton;
+}
+
 bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
     m_solver->internal_forces(x, forces);
     return true;

@@ -63,6 +63,12 @@ void StepSolver::prepare(double dt) {
         m_quasi_newton.prepare(*m_garment, bdf2_inertial_dt(dt));
 }
 
+IterationLimits StepSolver::capped(IterationLimits limits) const {
+    limits.iterations = std::min(limits.iterations, m_max_iterations);
+    limits.least_iterations = std::min(limits.least_iterations, m_max_iterations);
+    return limits;
+}
+
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     return solve(boundary, dt, m_start.get(), m_settings.quasi_newton, state);
 }
@@ -171,7 +177,8 @@ const PotentialValue* StepSolver::lower_of_guess_and_prediction(bool guess_known
 MinimiseReport StepSolver::minimise(const IterationLimits& limits, const PotentialValue* at_x) {
     if (m_settings.minimiser == MinimiserKind::newton)
         return m_newton.minimise(m_potential, m_x, at_x);
-    return m_quasi_newton.minimise(m_potential, m_x, limits, at_x, m_deadline.earlier(m_contact_ms),
+    return m_quasi_newton.minimise(m_potential, m_x, capped(limits), at_x,
+                                   m_deadline.earlier(m_contact_ms),
                                    m_deadline_for_more.earlier(m_contact_ms));
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "data/authoring/sheet.h"
 #include "demos/compare/arguments.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
@@ -66,6 +67,49 @@ TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {
     EXPECT_EQ(torch.variant, "fast");
     EXPECT_EQ(rounded.refine, "12");
     EXPECT_NO_THROW(make_solver("bf16-fast+0", FreeSheet(), {}));
+}
+
+/// 900 vertices, without an outside.
+class LargeSheet : public ComparisonScene {
+ public:
+    LargeSheet()
+        : ComparisonScene(
+              Garment("large sheet", make_sheet(0.5, 0.5, 900), Fabric::soft_cotton())) {}
+    Boundary boundary(double, double) const override { return FreeSheet().boundary(0.0, 0.0); }
+};
+
+TEST(SolverFactory, ProxiesAreSimulatedByAnySolver) {
+    const LargeSheet scene;
+    for (const std::string name :
+         {"bullet", "quasi-newton", "quasi-newton-5-bdf2", "xpbd-20", "small+3", "reference"}) {
+        SCOPED_TRACE(name);
+        const auto stepper = make_solver(name + "~120", scene, {});
+        EXPECT_EQ(stepper->name().rfind(make_solver(name, scene, {})->name() + "~1", 0), 0u)
+            << stepper->name();
+        ClothState state = ClothState::at_rest(scene.garment());
+        ASSERT_TRUE(stepper->step(scene.boundary(0.0, 0.0), scene.frame_time(), state).finite);
+        EXPECT_LT(state.x.col(1).maxCoeff(), -5e-3) << "it does not fall";
+    }
+    EXPECT_NO_THROW(make_solver("quasi-newton~120@20", scene, {}));
+}
+
+TEST(SolverFactory, ProxiesAreRefusedByName) {
+    const LargeSheet scene;
+    const auto refused = [&](const std::string& name) -> std::string {
+        try {
+            make_solver(name, scene, {});
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "";
+    };
+    for (const auto& [name, word] :
+         {std::pair("quasi-newton~", "~"), std::pair("quasi-newton~19", "from 20"),
+          std::pair("quasi-newton~1000", "large sheet: it has 900 vertices"),
+          std::pair("quasi-newton~no_such_shirt", "tshirt_1000"),
+          std::pair("quasi-newton~tshirt_1000", "from the coarse mesh"),
+          std::pair("nothing~120", "xpbd-N"), std::pair("xpbd-20~120@10", "no limit")})
+        EXPECT_NE(refused(name).find(word), std::string::npos) << name << ": " << refused(name);
 }
 
 TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
