@@ -39,9 +39,8 @@ struct Options {
 Options parse(int count, char** arguments) {
     Options options;
     cloth::SkinningTrainerSettings& settings = options.settings;
-    CLI::App app(
-        "train_skinning: trains a garment-specific skinning network, without ground truth",
-        "train_skinning");
+    CLI::App app("train_skinning: trains a garment-specific skinning network, without ground truth",
+                 "train_skinning");
     app.option_defaults()->take_last();
     const auto add = [&app](const char* name, auto& value, const char* type,
                             const char* description) {

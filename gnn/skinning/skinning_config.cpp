@@ -70,8 +70,8 @@ std::vector<TensorShape> tensor_shapes(const SkinningConfig& config) {
     shapes.emplace_back("input.deviation", std::vector<int>{config.feature_count()});
     shapes.emplace_back("rest", std::vector<int>{config.vertices, 3});
     shapes.emplace_back("worn", std::vector<int>{config.vertices, 3});
-    shapes.emplace_back("skin", std::vector<int>{config.vertices,
-                                                 static_cast<int>(config.joints.size())});
+    shapes.emplace_back("skin",
+                        std::vector<int>{config.vertices, static_cast<int>(config.joints.size())});
     return shapes;
 }
 

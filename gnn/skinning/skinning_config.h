@@ -22,13 +22,13 @@ struct SkinningConfig {
     std::string garment;              ///< that it was trained for, for messages
     int vertices = 0;                 ///< |V| of it, 3 to 100,000
     std::vector<std::string> joints;  ///< that it sees, 1 to 100; parents first, the root is first
-    std::vector<int> ages = {0, 1, 2, 4, 8};         ///< of the poses that it sees, in steps before
-                                                     ///< the end of the step; ascending from 0, to
-                                                     ///< 100
+    std::vector<int> ages = {0, 1, 2, 4, 8};    ///< of the poses that it sees, in steps before
+                                                ///< the end of the step; ascending from 0, to
+                                                ///< 100
     std::vector<int> layers = {256, 192, 128};  ///< widths of the hidden layers, 1 to 10 of 1 to
                                                 ///< 2048
-    double scale = 0.01;      ///< of an output of 1 (m), 1e-4 to 1
-    double dt = 1.0 / 30.0;   ///< time step that it is trained for (s), 1e-4 to 1
+    double scale = 0.01;                        ///< of an output of 1 (m), 1e-4 to 1
+    double dt = 1.0 / 30.0;                     ///< time step that it is trained for (s), 1e-4 to 1
 
     int feature_count() const;  ///< see PoseFeatures
 

@@ -15,10 +15,9 @@ SkinningNetwork::SkinningNetwork(const SkinningWeights& weights)
     for (size_t k = 0; k <= weights.config.layers.size(); ++k) {
         const std::string name = "layer." + std::to_string(k);
         const WeightTensor& weight = weights.tensor(name + ".weight");
-        m_layers.push_back({Eigen::Map<const Matrix>(weight.data.data(), weight.shape[0],
-                                                     weight.shape[1]),
-                            vector_of(weights.tensor(name + ".bias")),
-                            Eigen::VectorXf::Zero(weight.shape[0])});
+        m_layers.push_back(
+            {Eigen::Map<const Matrix>(weight.data.data(), weight.shape[0], weight.shape[1]),
+             vector_of(weights.tensor(name + ".bias")), Eigen::VectorXf::Zero(weight.shape[0])});
     }
 }
 
@@ -38,8 +37,7 @@ void SkinningNetwork::evaluate(const VectorX& features, Points& displacement) {
     displacement.resize(input->size() / 3, 3);
     using PointsF = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
     displacement =
-        m_scale *
-        Eigen::Map<const PointsF>(input->data(), displacement.rows(), 3).cast<double>();
+        m_scale * Eigen::Map<const PointsF>(input->data(), displacement.rows(), 3).cast<double>();
 }
 
 }  // namespace cloth

@@ -22,17 +22,17 @@ static const SkinningWeights& checked(const Garment& garment, const SkinningWeig
     const double difference =
         (garment.rest().vertices - weights->points("rest")).rowwise().norm().maxCoeff();
     if (!(difference < 1e-3))
-        throw ArgumentError(subject,
-                            "has another rest shape than " + weights->config.garment +
-                                ", which the network is of",
-                            remedy);
+        throw ArgumentError(
+            subject,
+            "has another rest shape than " + weights->config.garment + ", which the network is of",
+            remedy);
     return *weights;
 }
 
-static const Body& checked(const Body* body) {
+static JointFit fit_of(const Body* body) {
     if (!body)
         throw ArgumentError("body", "is null", "give the body that the network was trained on");
-    return *body;
+    return {body->rest(), body->weights()};
 }
 
 SkinningPredictor::SkinningPredictor(const Garment& garment,
@@ -40,7 +40,7 @@ SkinningPredictor::SkinningPredictor(const Garment& garment,
                                      std::shared_ptr<const Body> body)
     : m_weights(std::move(weights)),
       m_body(std::move(body)),
-      m_fit(checked(m_body.get()).rest(), m_body->weights()),
+      m_fit(fit_of(m_body.get())),
       m_features(checked(garment, m_weights.get()).config, *m_body),
       m_network(*m_weights),
       m_skin(m_weights->skin(m_features.joints())),
@@ -59,8 +59,7 @@ const Obstacle* SkinningPredictor::find_body(const Boundary& boundary) {
 /// Makes the pose at t the newest of m_seen. After a skin that is not where the last step ended,
 /// such as the first one, the body counts as having stood still.
 void SkinningPredictor::remember(const Points& skin0) {
-    const bool goes_on =
-        !m_seen.empty() && (skin0 - m_last_skin).cwiseAbs().maxCoeff() < 1e-4;
+    const bool goes_on = !m_seen.empty() && (skin0 - m_last_skin).cwiseAbs().maxCoeff() < 1e-4;
     if (goes_on) return;
     m_fit.find(skin0, m_matrices0);
     m_seen.assign(1, m_features.see(m_matrices0));

@@ -45,7 +45,7 @@ class SkinningPredictor {
     Points m_worn, m_displacement;
     VectorX m_input;
     std::vector<SkinMatrix> m_matrices0, m_matrices1;
-    Points m_last_skin;          ///< at the end of the last step
+    Points m_last_skin;           ///< at the end of the last step
     std::deque<SeenPose> m_seen;  ///< the pose at the start of the step first, then older ones
 };
 

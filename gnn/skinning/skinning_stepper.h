@@ -41,8 +41,7 @@ class SkinningStepper : public Stepper {
     /// Keeps a reference to `garment`.
     /// @throws ArgumentError as SkinningPredictor does, or if a setting is out of range
     SkinningStepper(const Garment& garment, std::shared_ptr<const SkinningWeights> weights,
-                    std::shared_ptr<const Body> body,
-                    const SkinningStepperSettings& settings = {});
+                    std::shared_ptr<const Body> body, const SkinningStepperSettings& settings = {});
 
     /// "skinning", or "skinning-raw" without projection.
     std::string name() const override { return m_settings.project ? "skinning" : "skinning-raw"; }

@@ -30,7 +30,8 @@ SkinningWindow SkinningClips::window(size_t clip, int first, int frames) const {
     }
     for (int frame = first; frame < first + frames; ++frame) {
         std::vector<const SeenPose*> poses;
-        for (const int age : m_ages) poses.push_back(&seen[static_cast<size_t>(frame - age - oldest)]);
+        for (const int age : m_ages)
+            poses.push_back(&seen[static_cast<size_t>(frame - age - oldest)]);
         window.features.emplace_back();
         m_features.build(poses, Boundary().gravity, window.features.back());
     }

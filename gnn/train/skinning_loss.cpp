@@ -37,9 +37,9 @@ Points unskinned(const Points& gradient, const SkinWeights& weights,
         Eigen::Matrix3d blend = Eigen::Matrix3d::Zero();
         for (int k = weights.begin[static_cast<size_t>(i)];
              k < weights.begin[static_cast<size_t>(i) + 1]; ++k)
-            blend += weights.values[static_cast<size_t>(k)] *
-                     matrices[static_cast<size_t>(weights.joints[static_cast<size_t>(k)])]
-                         .leftCols<3>();
+            blend +=
+                weights.values[static_cast<size_t>(k)] *
+                matrices[static_cast<size_t>(weights.joints[static_cast<size_t>(k)])].leftCols<3>();
         result.row(i) = gradient.row(i) * blend;
     }
     return result;

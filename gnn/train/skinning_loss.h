@@ -1,7 +1,7 @@
 #pragma once
 
-#include "gnn/physics/energy/incremental_potential.h"
 #include "data/body/skinning.h"
+#include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/train/loss.h"
 
 namespace cloth {

@@ -60,10 +60,9 @@ SkinningWeights untrained(const SkinningTrainerSettings& settings, const Garment
 
 std::vector<TensorShape> layer_shapes(const SkinningConfig& config) {
     std::vector<TensorShape> shapes = tensor_shapes(config);
-    shapes.erase(std::remove_if(shapes.begin(), shapes.end(),
-                                [](const TensorShape& shape) {
-                                    return shape.first.rfind("layer.", 0) != 0;
-                                }),
+    shapes.erase(std::remove_if(
+                     shapes.begin(), shapes.end(),
+                     [](const TensorShape& shape) { return shape.first.rfind("layer.", 0) != 0; }),
                  shapes.end());
     return shapes;
 }
@@ -109,8 +108,7 @@ SkinningTrainer::SkinningTrainer(SkinningTrainerSettings settings)
                    m_settings.seed),
       m_adam(m_parameters.count(), torch::kCPU),
       m_random(m_settings.seed),
-      m_clips(
-          std::make_unique<SkinningClips>(m_body, m_settings.motions, m_weights.config)),
+      m_clips(std::make_unique<SkinningClips>(m_body, m_settings.motions, m_weights.config)),
       m_validation(std::make_unique<SkinningClips>(
           m_body, std::vector<std::string>{m_settings.validation_motion}, m_weights.config)),
       m_loss(*m_garment, m_weights.config.dt) {
@@ -125,14 +123,12 @@ Tensor SkinningTrainer::forward(const std::vector<VectorX>& features) const {
     Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> input(rows,
                                                                                 m_mean.size());
     for (Eigen::Index k = 0; k < rows; ++k)
-        input.row(k) =
-            ((features[static_cast<size_t>(k)] - m_mean).array() / m_deviation.array())
-                .cast<float>()
-                .max(-SkinningNetwork::most_deviations)
-                .min(SkinningNetwork::most_deviations)
-                .transpose();
-    Tensor hidden =
-        torch::from_blob(input.data(), {rows, input.cols()}, torch::kFloat32).clone();
+        input.row(k) = ((features[static_cast<size_t>(k)] - m_mean).array() / m_deviation.array())
+                           .cast<float>()
+                           .max(-SkinningNetwork::most_deviations)
+                           .min(SkinningNetwork::most_deviations)
+                           .transpose();
+    Tensor hidden = torch::from_blob(input.data(), {rows, input.cols()}, torch::kFloat32).clone();
     const size_t last = m_weights.config.layers.size();
     for (size_t k = 0; k <= last; ++k) {
         const std::string layer = "layer." + std::to_string(k);
@@ -149,8 +145,8 @@ void SkinningTrainer::pose(const SkinningWindow& window, const float* outputs,
                            std::vector<Points>& x) const {
     x.resize(window.matrices.size());
     for (size_t k = 0; k < x.size(); ++k) {
-        const Eigen::Map<const PointsF> output(
-            outputs + k * static_cast<size_t>(3 * m_worn.rows()), m_worn.rows(), 3);
+        const Eigen::Map<const PointsF> output(outputs + k * static_cast<size_t>(3 * m_worn.rows()),
+                                               m_worn.rows(), 3);
         x[k] = skin_points(m_worn + m_weights.config.scale * output.cast<double>(), m_skin,
                            window.matrices[k]);
     }
@@ -174,8 +170,7 @@ double SkinningTrainer::learn_window(const SkinningWindow& window, const float* 
                         x[k - 1], x[k], loss);
         if (!std::isfinite(loss.value) || !loss.gradient.allFinite()) continue;
         Eigen::Map<PointsF>(gradient + k * static_cast<size_t>(m_worn.size()), m_worn.rows(), 3) =
-            (m_weights.config.scale / frames *
-             unskinned(loss.gradient, m_skin, window.matrices[k]))
+            (m_weights.config.scale / frames * unskinned(loss.gradient, m_skin, window.matrices[k]))
                 .cast<float>();
         sum += loss.value / frames;
         if (k != 2) continue;
@@ -200,14 +195,14 @@ double SkinningTrainer::iterate() {
     const std::int64_t stride = frames * output.size(1);
     double loss = 0.0;
     for (int k = 0; k < m_settings.sequences; ++k)
-        loss += learn_window(windows[static_cast<size_t>(k)],
-                             output.data_ptr<float>() + k * stride,
+        loss += learn_window(windows[static_cast<size_t>(k)], output.data_ptr<float>() + k * stride,
                              seed.data_ptr<float>() + k * stride);
     output.backward(seed);
     const double rate =
         m_settings.learning_rate * (0.02 + 0.98 * 0.5 * (1.0 + std::cos(M_PI * progress())));
     m_adam.step(m_parameters.flat(), m_parameters.gradient(), rate, 0.0);
     m_loss_sum += loss;
+    ++m_losses;
     ++m_iteration;
     return loss;
 }
@@ -217,11 +212,10 @@ std::vector<Points> SkinningTrainer::displacements(const std::vector<VectorX>& f
     const Tensor output = forward(features);
     std::vector<Points> result;
     for (std::int64_t k = 0; k < output.size(0); ++k)
-        result.push_back(
-            m_weights.config.scale *
-            Eigen::Map<const PointsF>(output.data_ptr<float>() + k * output.size(1), m_worn.rows(),
-                                      3)
-                .cast<double>());
+        result.push_back(m_weights.config.scale *
+                         Eigen::Map<const PointsF>(output.data_ptr<float>() + k * output.size(1),
+                                                   m_worn.rows(), 3)
+                             .cast<double>());
     return result;
 }
 
@@ -280,26 +274,24 @@ static MetricsFile metrics_of(const std::string& folder) {
 
 void SkinningTrainer::write_row(const SkinningValidation* validation) {
     const double none = std::nan(""), count = std::max(1, m_summed);
+    const double loss = m_loss_sum / std::max(1, m_losses);
     const SkinningValidation seen = validation ? *validation : SkinningValidation{};
     const auto known = [&](double value) { return cell(validation ? value : none); };
     metrics_of(m_settings.out)
-        .append({cell(m_iteration), cell(m_seconds / 60.0),
-                 cell(m_loss_sum / m_settings.report_every), cell(m_sum.strain / count),
+        .append({cell(m_iteration), cell(m_seconds / 60.0), cell(loss), cell(m_sum.strain / count),
                  cell(m_sum.bending / count), cell(m_sum.gravity / count),
                  cell(m_sum.inertia / count), cell(m_sum.contact / count),
                  cell(m_sum.friction / count), known(seen.energy), known(seen.terms.strain),
                  known(seen.terms.bending), known(seen.terms.inertia), known(seen.terms.contact),
                  known(seen.stretch), known(seen.inside)});
     std::fprintf(stderr, "iteration %lld, %.1f min: loss %.4f\n",
-                 static_cast<long long>(m_iteration), m_seconds / 60.0,
-                 m_loss_sum / m_settings.report_every);
+                 static_cast<long long>(m_iteration), m_seconds / 60.0, loss);
     if (validation)
-        std::fprintf(stderr,
-                     "  %s: energy %.4f J, stretch %.3f, inside %.3f\n",
+        std::fprintf(stderr, "  %s: energy %.4f J, stretch %.3f, inside %.3f\n",
                      m_settings.validation_motion.c_str(), seen.energy, seen.stretch, seen.inside);
     m_sum = {};
     m_loss_sum = 0.0;
-    m_summed = 0;
+    m_losses = m_summed = 0;
 }
 
 void SkinningTrainer::run(const std::atomic<bool>& stop) {
@@ -308,26 +300,26 @@ void SkinningTrainer::run(const std::atomic<bool>& stop) {
     const double before = m_seconds;
     const auto start = Clock::now();
     double saved = m_seconds;
-    while (!stop && !is_done()) {
+    while (!is_done()) {
         iterate();
         m_seconds = before + std::chrono::duration<double>(Clock::now() - start).count();
         const bool last = is_done();
-        const bool validates = m_settings.validate_every > 0 &&
-                               (last || m_iteration % m_settings.validate_every == 0);
+        const bool validates =
+            m_settings.validate_every > 0 && (last || m_iteration % m_settings.validate_every == 0);
         if (validates) {
             const SkinningValidation validation = validate();
             write_row(&validation);
         } else if (m_iteration % m_settings.report_every == 0) {
             write_row(nullptr);
         }
-        if (m_seconds - saved < 60.0 * m_settings.save_every) continue;
         // Rows are means of the iterations since the last one, which a checkpoint does not hold.
-        if (m_iteration % m_settings.report_every == 0) {
-            save();
-            saved = m_seconds;
-        }
+        if (m_losses > 0) continue;
+        if (stop) break;
+        if (m_seconds - saved < 60.0 * m_settings.save_every) continue;
+        save();
+        saved = m_seconds;
     }
-    if (!stop) save();
+    save();
 }
 
 void SkinningTrainer::save() {

@@ -18,20 +18,20 @@ struct SkinningTrainerSettings {
     std::string garment = "tshirt_1000";  ///< as load_garment() takes it
     std::vector<std::string> motions;     ///< names or files; empty: training_motions()
     std::string validation_motion = "01_01";
-    SkinningConfig model;                 ///< ages, layers, scale and dt
-    LossKind loss = LossKind::log;        ///< energy or log
-    int sequences = 4;                    ///< of an iteration, 1 to 64
-    int frames = 4;                       ///< of a sequence, in a row, 1 to 64
-    double learning_rate = 1e-3;          ///< 1e-7 to 0.1; cosine decay to 2 %
+    SkinningConfig model;                            ///< ages, layers, scale and dt
+    LossKind loss = LossKind::log;                   ///< energy or log
+    int sequences = 4;                               ///< of an iteration, 1 to 64
+    int frames = 4;                                  ///< of a sequence, in a row, 1 to 64
+    double learning_rate = 1e-3;                     ///< 1e-7 to 0.1; cosine decay to 2 %
     double contact_first = 5e4, contact_last = 5e5;  ///< contact weight (N/m^2), 1e3 to 1e6, grows
                                                      ///< in the first half
-    std::int64_t iterations = 0;   ///< end of training, 0 to 1e9; 0: as many as fit into `minutes`
-    double minutes = 0.0;          ///< wall time of training, 0 to 1e6; 0: no limit
+    std::int64_t iterations = 0;  ///< end of training, 0 to 1e9; 0: as many as fit into `minutes`
+    double minutes = 0.0;         ///< wall time of training, 0 to 1e6; 0: no limit
     std::uint64_t seed = 1;
-    int threads = 1;               ///< of LibTorch, 1 to 256
-    int report_every = 50;         ///< iterations per row of metrics.csv, 1 to 1e6
-    int validate_every = 500;      ///< iterations between validations, 0 to 1e6; 0: none
-    double save_every = 3.0;       ///< minutes between checkpoints, 0 to 1e4
+    int threads = 1;                   ///< of LibTorch, 1 to 256
+    int report_every = 50;             ///< iterations per row of metrics.csv, 1 to 1e6
+    int validate_every = 500;          ///< iterations between validations, 0 to 1e6; 0: none
+    double save_every = 3.0;           ///< minutes between checkpoints, 0 to 1e4
     std::string out = "out/skinning";  ///< folder of checkpoint.pt, weights.safetensors and
                                        ///< metrics.csv
 };
@@ -105,6 +105,7 @@ class SkinningTrainer {
     double m_seconds = 0.0;  ///< trained so far
     EnergyTerms m_sum;       ///< of the frames since the last row
     double m_loss_sum = 0.0;
+    int m_losses = 0;  ///< in m_loss_sum
     int m_summed = 0;
 };
 
