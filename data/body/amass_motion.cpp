@@ -9,7 +9,7 @@ namespace cloth {
 
 namespace {
 
-const char* const take_original = "use the file as AMASS has it";
+const char* const as_in_amass = "use the file as AMASS has it";
 
 /// The rotation about v by its length (Rodrigues).
 Eigen::Quaterniond rotation_by(const Vec3& v) {
@@ -22,7 +22,7 @@ double frame_time_of(const NpzFile& file) {
     const std::string name = file.has("mocap_framerate") ? "mocap_framerate" : "mocap_frame_rate";
     const double rate = file.number(name);
     if (!(rate >= 1.0 && rate <= 10000.0))
-        file.fail(name, "is not between 1 and 10000 frames per second", take_original);
+        file.fail(name, "is not between 1 and 10000 frames per second", as_in_amass);
     return 1.0 / rate;
 }
 
@@ -36,9 +36,9 @@ AmassMotion AmassMotion::load(const std::string& path) {
     const auto frames = static_cast<size_t>(poses.shape[0]),
                values = static_cast<size_t>(poses.shape[1]);
     if (frames == 0 || values == 0 || values % 3 != 0)
-        file.fail("poses", "is not of three numbers for each joint, or of no frame", take_original);
+        file.fail("poses", "is not of three numbers for each joint, or of no frame", as_in_amass);
     if (places.shape[0] != poses.shape[0] || places.shape[1] != 3)
-        file.fail("trans", "is not of three numbers for each frame of poses", take_original);
+        file.fail("trans", "is not of three numbers for each frame of poses", as_in_amass);
     // z is up there, y is here.
     const Eigen::Quaterniond up(Eigen::AngleAxisd(-M_PI / 2.0, Vec3::UnitX()));
     motion.translations = Eigen::Map<const Points>(places.numbers.data(), places.shape[0], 3) *

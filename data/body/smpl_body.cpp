@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "data/body/ease.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 
@@ -34,12 +35,7 @@ std::vector<int> joint_map(int model, int motion) {
     return map;
 }
 
-double ease(double s) {
-    s = std::clamp(s, 0.0, 1.0);
-    return s * s * s * (10.0 + s * (6.0 * s - 15.0));
-}
-
-std::shared_ptr<const SmplModel> checked(std::shared_ptr<const SmplModel> model) {
+std::shared_ptr<const SmplModel> not_null(std::shared_ptr<const SmplModel> model) {
     if (!model) throw ArgumentError("SmplBody: model", "is null", "load one");
     return model;
 }
@@ -49,7 +45,7 @@ std::shared_ptr<const SmplModel> checked(std::shared_ptr<const SmplModel> model)
 SmplBody::SmplBody(std::shared_ptr<const SmplModel> model, const AmassMotion& motion,
                    const SmplBodySettings& settings)
     : MovingSurface(settings.friction),
-      m_model(checked(std::move(model))),
+      m_model(not_null(std::move(model))),
       m_settings(settings),
       m_frame_time(motion.frame_time) {
     check_range("SmplBodySettings.lead_in", settings.lead_in, 0.0, 60.0);

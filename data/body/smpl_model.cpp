@@ -10,7 +10,7 @@ namespace cloth {
 
 namespace {
 
-const char* const take_original = "use the file as the model's authors have it";
+const char* const as_published = "use the file as the model's authors have it";
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -30,7 +30,7 @@ NpyArray of_shape(const NpzFile& file, const std::string& name,
                       "has " + std::to_string(array.shape[axis]) + " entries on axis " +
                           std::to_string(axis) + ", where " + std::to_string(shape[axis]) +
                           " are expected",
-                      take_original);
+                      as_published);
     return array;
 }
 
@@ -38,7 +38,7 @@ NpyArray of_shape(const NpzFile& file, const std::string& name,
 int index_of(const NpzFile& file, const std::string& name, double number, int lowest, double end) {
     if (!(number >= lowest && number < end) || number != std::floor(number))
         file.fail(name, "names no. " + std::to_string(number) + ", which there is not",
-                  take_original);
+                  as_published);
     return static_cast<int>(number);
 }
 
@@ -47,14 +47,14 @@ std::shared_ptr<const Faces> read_faces(const NpzFile& file, std::int64_t vertic
     Faces faces(array.shape[0], 3);
     for (size_t k = 0; k < array.numbers.size(); ++k)
         faces.data()[k] = index_of(file, "f", array.numbers[k], 0, static_cast<double>(vertices));
-    if (faces.rows() == 0) file.fail("f", "has no face", take_original);
+    if (faces.rows() == 0) file.fail("f", "has no face", as_published);
     return std::make_shared<const Faces>(std::move(faces));
 }
 
 std::vector<int> read_parents(const NpzFile& file) {
     const NpyArray tree = of_shape(file, "kintree_table", {2, -1});
     const auto joints = static_cast<size_t>(tree.shape[1]);
-    if (joints == 0) file.fail("kintree_table", "names no joint", take_original);
+    if (joints == 0) file.fail("kintree_table", "names no joint", as_published);
     std::vector<int> parents = {-1};  // of the root the file has -1 as it looks without a sign
     for (size_t j = 1; j < joints; ++j)
         parents.push_back(
@@ -89,15 +89,14 @@ Eigen::MatrixXd read_regressor(const NpzFile& file, std::int64_t joints, std::in
     return as_matrix(of_shape(file, "J_regressor", {joints, vertices}));
 }
 
-std::shared_ptr<const SkinWeights> read_weights(const NpzFile& file, std::int64_t vertices,
-                                                std::int64_t joints) {
+std::shared_ptr<const SkinWeights> read_skin_weights(const NpzFile& file, std::int64_t vertices,
+                                                     std::int64_t joints) {
     const NpyArray array = of_shape(file, "weights", {vertices, joints});
     const auto dense = as_matrix(array);
     for (Eigen::Index i = 0; i < dense.rows(); ++i)
         if (dense.row(i).minCoeff() < 0.0 || !(dense.row(i).sum() > 1e-6) ||
             dense.row(i).maxCoeff() > 1e6)
-            file.fail("weights", "of vertex " + std::to_string(i) + " are no shares",
-                      take_original);
+            file.fail("weights", "of vertex " + std::to_string(i) + " are no shares", as_published);
     return std::make_shared<const SkinWeights>(
         sparse_weights(dense, static_cast<int>(joints), 0.0));
 }
@@ -109,7 +108,7 @@ Eigen::MatrixXf read_blend_shapes(const NpzFile& file, const std::string& name,
     const NpyArray array = of_shape(file, name, {vertices, 3, count});
     const Eigen::MatrixXf shapes = as_matrix(array).cast<float>();
     if (!shapes.allFinite())
-        file.fail(name, "holds a number beyond single precision", take_original);
+        file.fail(name, "holds a number beyond single precision", as_published);
     if (shapes.rows() != 3 * vertices) return Eigen::MatrixXf(3 * vertices, 0);
     return shapes;
 }
@@ -122,13 +121,13 @@ SmplModel SmplModel::load(const std::string& path) {
     const NpyArray mean = of_shape(file, "v_template", {-1, 3});
     const std::int64_t vertices = mean.shape[0];
     if (vertices < 3 || vertices > 10000000)
-        file.fail("v_template", "has " + std::to_string(vertices) + " vertices", take_original);
+        file.fail("v_template", "has " + std::to_string(vertices) + " vertices", as_published);
     model.mean = as_matrix(mean);
     model.faces = read_faces(file, vertices);
     model.parents = read_parents(file);
     const std::int64_t joints = model.joint_count();
     model.regressor = read_regressor(file, joints, vertices);
-    model.weights = read_weights(file, vertices, joints);
+    model.weights = read_skin_weights(file, vertices, joints);
     model.shapes = read_blend_shapes(file, "shapedirs", vertices, -1);
     model.pose_shapes =
         read_blend_shapes(file, "posedirs", vertices, file.has("posedirs") ? 9 * (joints - 1) : -1);

@@ -16,7 +16,7 @@ namespace {
 const char* const save_again = "save it again with numpy.save or numpy.savez, allow_pickle=False";
 
 /// What the header of a .npy says.
-struct Header {
+struct NpyHeader {
     char kind = 0;     ///< b, i, u, f, U or S
     size_t width = 0;  ///< bytes of an element
     bool big_endian = false, fortran = false;
@@ -30,8 +30,8 @@ class HeaderParser {
     HeaderParser(const std::string& text, const std::string& file, const std::string& place)
         : m_text(text), m_file(file), m_place(place) {}
 
-    Header parse() const {
-        Header header;
+    NpyHeader parse() const {
+        NpyHeader header;
         parse_type(value_of("'descr'"), header);
         const std::string order = value_of("'fortran_order'");
         header.fortran = order.rfind("True", 0) == 0;
@@ -53,7 +53,7 @@ class HeaderParser {
         return begin == std::string::npos ? "" : m_text.substr(begin);
     }
 
-    void parse_type(const std::string& value, Header& header) const {
+    void parse_type(const std::string& value, NpyHeader& header) const {
         const size_t end = value.find('\'', 1);
         if (value.empty() || value[0] != '\'' || end == std::string::npos)
             fail("its elements have several fields, or no type");
@@ -93,7 +93,7 @@ class HeaderParser {
         if (!known) fail("numbers of type '" + printable(type) + "' cannot be read");
     }
 
-    void parse_shape(const std::string& value, Header& header) const {
+    void parse_shape(const std::string& value, NpyHeader& header) const {
         if (value.empty() || value[0] != '(' || value.find(')') == std::string::npos)
             fail("it has no shape");
         std::string digits;
@@ -128,9 +128,9 @@ double number_at(const char* bytes, bool big_endian) {
     return static_cast<double>(number);
 }
 
-using Reader = double (*)(const char*, bool);
+using NumberReader = double (*)(const char*, bool);
 
-Reader reader_of(const Header& header) {
+NumberReader reader_of(const NpyHeader& header) {
     if (header.kind == 'f') return header.width == 4 ? number_at<float> : number_at<double>;
     const bool has_sign = header.kind == 'i';
     switch (header.width) {
@@ -145,7 +145,7 @@ Reader reader_of(const Header& header) {
     }
 }
 
-std::string read_text(const char* data, const Header& header) {
+std::string read_text(const char* data, const NpyHeader& header) {
     std::string text;
     const size_t step = header.kind == 'U' ? 4 : 1;
     for (size_t at = 0; at < header.width; at += step) {
@@ -192,7 +192,7 @@ NpyArray parse_npy(const std::string& bytes, const std::string& file, const std:
     const size_t begin = 8 + field;
     if (length > bytes.size() - begin) fail("is cut off in its header");
     const std::string text = bytes.substr(begin, length);
-    const Header header = HeaderParser(text, file, place).parse();
+    const NpyHeader header = HeaderParser(text, file, place).parse();
     const size_t held = bytes.size() - begin - length;
     if (header.width > 0 && header.count > held / header.width)
         fail("is cut off: it holds fewer numbers than it says");
@@ -205,7 +205,7 @@ NpyArray parse_npy(const std::string& bytes, const std::string& file, const std:
         array.text = read_text(data, header);
         return array;
     }
-    const Reader read = reader_of(header);
+    const NumberReader read = reader_of(header);
     array.numbers.resize(header.count);
     for (size_t k = 0; k < header.count; ++k)
         array.numbers[k] = read(data + k * header.width, header.big_endian);

@@ -14,9 +14,9 @@ namespace cloth {
 
 namespace {
 
-using Archive = std::unique_ptr<void, int (*)(void*)>;
+using NpzArchive = std::unique_ptr<void, int (*)(void*)>;
 
-Archive open(const std::string& path) {
+NpzArchive open_archive(const std::string& path) {
     return {unzOpen64(path.c_str()), unzClose};
 }
 
@@ -25,7 +25,7 @@ const char* const ask = "numpy.load lists what a file holds";
 }  // namespace
 
 NpzFile::NpzFile(const std::string& path) : m_path(path) {
-    const Archive archive = open(path);
+    const NpzArchive archive = open_archive(path);
     if (!archive) {
         read_file(path);  // says that there is no such file, or that it is a folder
         throw LoadError(path, "", "is not an .npz file", "write it with numpy.savez");
@@ -60,7 +60,7 @@ void NpzFile::fail(const std::string& name, const std::string& problem,
 NpyArray NpzFile::array(const std::string& name) const {
     const auto found = m_places.find(name);
     if (found == m_places.end()) fail(name, "is missing", ask);
-    const Archive archive = open(m_path);
+    const NpzArchive archive = open_archive(m_path);
     int state = archive ? unzGoToFirstFile(archive.get()) : UNZ_BADZIPFILE;
     for (unsigned long k = 0; k < found->second && state == UNZ_OK; ++k)
         state = unzGoToNextFile(archive.get());

@@ -17,7 +17,7 @@ using nlohmann::json;
 
 namespace {
 
-const char* const train_again = "train or export the network again";
+const char* const export_again = "train or export the network again";
 
 size_t element_count(const std::vector<int>& shape) {
     size_t count = 1;
@@ -39,16 +39,16 @@ RawFile read_raw(const std::string& file) {
     const std::string all = read_file(file);
     std::uint64_t length = 0;
     if (all.size() < sizeof length)
-        throw LoadError(file, "header", "the file is truncated", train_again);
+        throw LoadError(file, "header", "the file is truncated", export_again);
     std::memcpy(&length, all.data(), sizeof length);
     if (length > all.size() - sizeof length)
         throw LoadError(file, "header", "the file is truncated or not in safetensors format",
-                        train_again);
+                        export_again);
     const auto begin = all.begin() + sizeof length;
     const auto end = begin + static_cast<std::ptrdiff_t>(length);
     RawFile raw{json::parse(begin, end, nullptr, false), {end, all.end()}};
     if (!raw.header.is_object())
-        throw LoadError(file, "header", "is not a JSON object", train_again);
+        throw LoadError(file, "header", "is not a JSON object", export_again);
     return raw;
 }
 
@@ -63,15 +63,15 @@ WeightTensor read_tensor(const RawFile& raw, const json& entry, const std::strin
         entry.at("data_offsets").at(0).get_to(begin);
         entry.at("data_offsets").at(1).get_to(end);
     } catch (const json::exception& error) {
-        throw LoadError(file, place, error.what(), train_again);
+        throw LoadError(file, place, error.what(), export_again);
     }
     for (int size : tensor.shape)
         if (size < 1 || size > (1 << 20))
-            throw LoadError(file, place, "has an unusable shape", train_again);
+            throw LoadError(file, place, "has an unusable shape", export_again);
     if (begin > end || end > raw.bytes.size())
-        throw LoadError(file, place, "lies outside the file: it is truncated", train_again);
+        throw LoadError(file, place, "lies outside the file: it is truncated", export_again);
     if ((end - begin) != element_count(tensor.shape) * sizeof(float))
-        throw LoadError(file, place, "has a size that does not fit its shape", train_again);
+        throw LoadError(file, place, "has a size that does not fit its shape", export_again);
     tensor.data.resize((end - begin) / sizeof(float));
     std::memcpy(tensor.data.data(), raw.bytes.data() + begin, end - begin);
     return tensor;

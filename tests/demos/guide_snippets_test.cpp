@@ -201,8 +201,8 @@ TEST_F(GuideSnippets, BodiesOfSmpl) {
     cloth::Boundary outside;
     const double t = 0.5, dt = 1.0 / 30.0;
     const auto model = std::make_shared<const cloth::SmplModel>(cloth::SmplModel::load(model_file));
-    const cloth::SmplBody body(model, cloth::AmassMotion::load(motion_file));
-    outside.obstacles = {body.obstacle(t, t + dt)};
+    const cloth::SmplBody person(model, cloth::AmassMotion::load(motion_file));
+    outside.obstacles = {person.obstacle(t, t + dt)};
     EXPECT_EQ(outside.obstacles[0].x1.rows(), 16);
     EXPECT_NO_THROW(cloth::check_obstacles(outside));
 }
