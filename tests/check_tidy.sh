@@ -10,7 +10,7 @@ shift || true
 files=("$@")
 if [ ${#files[@]} -eq 0 ]; then
   mapfile -t files < <(sed -nE \
-    's#^ *"file": "(.*/(bullet_ext|collision|gnn/graph|gnn/model|gnn/physics)/[^"]*)",?$#\1#p' \
+    's#^ *"file": "(.*/(bullet_ext|collision|gnn/graph|gnn/model|gnn/physics|gnn/skinning)/[^"]*)",?$#\1#p' \
     "$build/compile_commands.json" | grep -vE '/tests/|cmake_pch')
 fi
 # clang reads no headers that GCC precompiled, and the files are to include what they use

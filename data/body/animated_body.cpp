@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "data/body/ease.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 
@@ -12,12 +13,6 @@ namespace cloth {
 using Eigen::Quaterniond;
 
 namespace {
-
-/// 0 to 1 with zero velocity and acceleration at both ends.
-double ease(double s) {
-    s = std::clamp(s, 0.0, 1.0);
-    return s * s * s * (10.0 + s * (6.0 * s - 15.0));
-}
 
 Vec3 log_rotation(Quaterniond q) {
     if (q.w() < 0.0) q.coeffs() = -q.coeffs();

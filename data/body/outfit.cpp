@@ -21,8 +21,8 @@ constexpr double kReach = 0.06;  // m
 void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit) {
     std::vector<SurfaceDistance> surfaces;
     for (const TriMesh& mesh : inner) surfaces.emplace_back(mesh);
-    constexpr int kRounds = 5;  // what clears one layer may come near to another
-    for (int round = 0; round < kRounds; ++round) {
+    constexpr int kWearingRounds = 5;  // what clears one layer may come near to another
+    for (int round = 0; round < kWearingRounds; ++round) {
         const Points before = outer.vertices;
         for (const SurfaceDistance& surface : surfaces)
             if (!push_over(outer, surface, Outfit::gap, kReach))

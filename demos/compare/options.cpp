@@ -43,7 +43,8 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
     add_list(app, "--solvers", options.solvers,
              "bullet, bullet-fine, bullet-K (K iterations), reference,\n"
              "quasi-newton, quasi-newton-K (K iterations), xpbd-N (N\n"
-             "substeps), and networks: small, fast, baseline, sampling,\n"
+             "substeps), skinning, skinning-raw (the garment's own\n"
+             "network, if it has one), and networks: small, fast, baseline, sampling,\n"
              "reduction, as shipped (10 refinement iterations or more,\n"
              "fast motion in sub-steps), or each with +K for exactly K\n"
              "refinement iterations (+0: the network alone); -bdf2 at\n"

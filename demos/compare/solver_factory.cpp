@@ -12,6 +12,7 @@
 #include "gnn/model/engine.h"
 #include "gnn/model/make_cloth.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
+#include "gnn/skinning/skinning_stepper.h"
 
 namespace cloth {
 namespace {
@@ -102,6 +103,7 @@ class WithLimbs : public Stepper {
  public:
     explicit WithLimbs(std::unique_ptr<Stepper> inner) : m_inner(std::move(inner)) {}
     std::string name() const override { return m_inner->name(); }
+    double fixed_dt() const override { return m_inner->fixed_dt(); }
     bool is_independent() const override { return m_inner->is_independent(); }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
         return m_inner->step(m_limbs.filter(boundary, dt, state), dt, state);
@@ -127,6 +129,27 @@ std::unique_ptr<Stepper> make_xpbd(const std::string& name, const ComparisonScen
 
 std::string weights_folder(const std::string& folder) {
     return folder.empty() ? asset_path("weights") : folder;
+}
+
+std::unique_ptr<Stepper> make_skinning(const std::string& name, const ComparisonScene& scene,
+                                       const SolverSettings& settings) {
+    if (name != "skinning" && name != "skinning-raw")
+        throw UsageError("solver " + name + ": write skinning or skinning-raw");
+    const std::string file =
+        weights_folder(settings.weights) + "/skinning/" + scene.garment().name() + ".safetensors";
+    if (!std::filesystem::exists(file))
+        throw UsageError("solver " + name + ": garment " + scene.garment().name() +
+                         " has no skinning network of its own; train one with train_skinning and "
+                         "save it as " +
+                         file);
+    SkinningStepperSettings skinning;
+    skinning.project = name == "skinning";
+    skinning.proximity.threads = settings.threads;
+    auto stepper = std::make_unique<SkinningStepper>(
+        scene.garment(), std::make_shared<const SkinningWeights>(SkinningWeights::load(file)),
+        std::make_shared<const Body>(Body::load_default()), skinning);
+    if (!scene.has_limbs()) return stepper;
+    return std::make_unique<WithLimbs>(std::move(stepper));
 }
 
 std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weights& weights,
@@ -159,6 +182,7 @@ std::unique_ptr<Stepper> make_own_solver(const std::string& name, const Comparis
         return make_newton(name, scene);
     if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
     if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
+    if (starts_with(name, "skinning")) return make_skinning(name, scene, settings);
     return make_network(name, scene, settings);
 }
 
@@ -189,7 +213,8 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton, quasi-newton-K, quasi-newton-KxS, xpbd-N or a network of " +
+        "quasi-newton, quasi-newton-K, quasi-newton-KxS, xpbd-N, skinning, skinning-raw or a "
+        "network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
 }

@@ -40,14 +40,19 @@ struct SolverSettings {
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
 /// | bf16-VARIANT[+K]   | the same, in the engine with products in bfloat16             |
 ///
-/// All but Bullet's and XPBD take "-bdf2" at the end: the same with BDF2 instead of backward Euler.
-/// They also take "@M": the same in M ms a step, see Stepper::set_max_ms().
+/// | skinning           | the garment's own network, skinning/GARMENT.safetensors in the|
+/// |                    | folder of weights, projected out of obstacles                 |
+/// | skinning-raw       | the same as it answers, see SkinningStepper                   |
+///
+/// All but Bullet's, XPBD and skinning take "-bdf2" at the end: the same with BDF2 instead of
+/// backward Euler. They also take "@M": the same in M ms a step, see Stepper::set_max_ms().
 ///
 /// "SOLVER~N" simulates a proxy of about N vertices by SOLVER, and shows the garment following it;
 /// "SOLVER~GARMENT" another garment of the same cut, such as tshirt_1000: see make_proxy_solver().
 ///
-/// @throws UsageError for an unknown name or a number out of range, LoadError for broken weights,
-///         ArgumentError if the garment can have no such proxy
+/// @throws UsageError for an unknown name, a number out of range or a garment without a skinning
+///         network, LoadError for broken weights, ArgumentError if the garment can have no such
+///         proxy
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);
 

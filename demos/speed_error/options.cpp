@@ -72,7 +72,8 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
              "sub-steps), quasi-newton-K, newton-K (K iterations),\n"
              "quasi-newton, NAME (a network; both as shipped), reference,\n"
              "NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
-             "instead of the engine), bf16-NAME+K (products in bfloat16);\n"
+             "instead of the engine), bf16-NAME+K (products in bfloat16),\n"
+             "skinning, skinning-raw (the garment's own network);\n"
              "-bdf2 at the end: by BDF2; @M: in M ms a step. Default: every family at\n"
              "several settings, with all networks of the weights folder");
     app.add_option("--relative-to", options.relative_to,

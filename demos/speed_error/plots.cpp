@@ -44,6 +44,8 @@ std::string colour_of(Kind kind, size_t k) {
             return "#0072b2";
         case Kind::newton:
             return "#000000";
+        case Kind::skinning:
+            return "#6b6b6b";
         case Kind::network:
             break;
     }
@@ -64,7 +66,7 @@ std::string variety(const SolverFamily& family) {
 
 /// One colour per family; its varieties have the same one, and dashes.
 std::vector<std::string> colours_of(const std::vector<Family>& families) {
-    std::array<std::vector<std::string>, 5> seen;  // names of each kind so far
+    std::array<std::vector<std::string>, 6> seen;  // names of each kind so far
     std::vector<std::string> colours;
     for (const Family& family : families) {
         const bool bullet = family.family.kind == Kind::bullet;

@@ -83,6 +83,9 @@ SolverFamily solver_family(std::string solver) {
     if (const auto setting = after(solver, "newton-"))
         return {Kind::newton, "Newton", *setting, "iterations"};
     if (solver == "reference") return {Kind::newton, "Newton", "reference", "iterations"};
+    if (solver == "skinning")
+        return {Kind::skinning, "skinning network", "projected", "projection"};
+    if (solver == "skinning-raw") return {Kind::skinning, "skinning network", "raw", "projection"};
     return network_family(solver);
 }
 

@@ -9,7 +9,7 @@ namespace cloth {
 
 /// A solver as one setting of a family.
 struct SolverFamily {
-    enum class Kind { bullet, xpbd, quasi_newton, newton, network };
+    enum class Kind { bullet, xpbd, quasi_newton, newton, network, skinning };
     Kind kind;
     std::string name;     ///< for a legend: "quasi-Newton", "Bullet, 8 sub-steps", "fast, LibTorch"
     std::string setting;  ///< for a point: "3", "+10", "shipped"

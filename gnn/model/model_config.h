@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "gnn/graph/features.h"
+#include "gnn/model/tensor_file.h"
 
 namespace cloth {
 
@@ -71,9 +71,6 @@ struct ModelConfig {
 };
 
 bool operator==(const ModelConfig& a, const ModelConfig& b);
-
-/// Name and shape of one array of numbers of the network.
-using TensorShape = std::pair<std::string, std::vector<int>>;
 
 /// Parts of the network that belong to a level are named after it: "edge" and "mesh" of the mesh,
 /// "edge1" and "mesh1" of level 1.

@@ -3,21 +3,14 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "gnn/model/model_config.h"
+#include "gnn/model/tensor_file.h"
 
 namespace cloth {
 
-/// One array of numbers, row major.
-struct WeightTensor {
-    std::vector<int> shape;
-    std::vector<float> data;
-};
-
-/// A trained network as a file: safetensors, that is 8 bytes of header length, a JSON header, then
-/// the numbers (little-endian float32). The configuration and the format version stand in the
-/// header's __metadata__, so that any safetensors reader can open the file.
+/// A trained network as a file, see TensorFile. The configuration and the format version stand in
+/// its metadata.
 ///
 ///     Weights weights = Weights::load("data/assets/weights/fast.safetensors");
 ///     const WeightTensor& bias = weights.tensor("decoder.output.bias");

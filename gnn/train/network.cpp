@@ -291,7 +291,7 @@ static VectorF to_vector(const WeightTensor& tensor) {
 Weights Network::export_weights() const {
     Weights weights;
     weights.config = m_config;
-    m_parameters.copy_to(weights);
+    m_parameters.copy_to(weights.tensors);
     const std::pair<const char*, const FeatureStatistics*> parts[] = {
         {"node", &m_statistics.node},
         {"edge", &m_statistics.edge},
@@ -309,7 +309,7 @@ void Network::import_weights(const Weights& weights) {
     if (!(weights.config == m_config))
         throw ArgumentError("weights", "are of another network configuration",
                             "make the network from weights.config");
-    m_parameters.copy_from(weights);
+    m_parameters.copy_from(weights.tensors);
     const auto read = [&](const std::string& name) {
         return FeatureStatistics{to_vector(weights.tensor("statistics." + name + ".mean")),
                                  to_vector(weights.tensor("statistics." + name + ".deviation"))};

@@ -13,8 +13,8 @@ static std::int64_t element_count(const std::vector<int>& shape) {
     return count;
 }
 
-Parameters::Parameters(const ModelConfig& config, torch::Device device, std::uint64_t seed) {
-    const auto shapes = parameter_shapes(config);
+Parameters::Parameters(const std::vector<TensorShape>& shapes, const std::string& output,
+                       torch::Device device, std::uint64_t seed) {
     std::int64_t count = 0;
     for (const auto& [name, shape] : shapes) count += element_count(shape);
     m_flat = torch::zeros({count}, torch::kFloat32).to(device);
@@ -30,7 +30,7 @@ Parameters::Parameters(const ModelConfig& config, torch::Device device, std::uin
         m_views.emplace(name, view);
         offset += size;
     }
-    initialise(config, seed);
+    initialise(shapes, output, seed);
 }
 
 /// Number of inputs that the linear layer of a weight or bias sums over.
@@ -50,15 +50,15 @@ static double fan_in(const std::string& name, const std::vector<TensorShape>& sh
     return inputs;
 }
 
-void Parameters::initialise(const ModelConfig& config, std::uint64_t seed) {
-    const auto shapes = parameter_shapes(config);
+void Parameters::initialise(const std::vector<TensorShape>& shapes, const std::string& output,
+                            std::uint64_t seed) {
     std::mt19937_64 random(seed);
     for (const auto& [name, shape] : shapes) {
         std::vector<float> values(static_cast<size_t>(element_count(shape)), 0.0f);
         if (name.find(".norm.weight") != std::string::npos) {
             values.assign(values.size(), 1.0f);
         } else if (name.find(".norm.bias") == std::string::npos) {
-            const double shrink = name.rfind("decoder.output", 0) == 0 ? 0.1 : 1.0;
+            const double shrink = name.rfind(output, 0) == 0 ? 0.1 : 1.0;
             const double bound = shrink / std::sqrt(fan_in(name, shapes));
             // 53 random bits by hand: std::uniform_real_distribution differs between libraries
             for (float& value : values)
@@ -79,19 +79,23 @@ const torch::Tensor& Parameters::view(const std::string& name) const {
     return found->second;
 }
 
-void Parameters::copy_to(Weights& weights) const {
+void Parameters::copy_to(std::map<std::string, WeightTensor>& tensors) const {
     for (const auto& [name, view] : m_views) {
         const torch::Tensor values = view.detach().to(torch::kCPU).contiguous();
         const float* data = values.data_ptr<float>();
         const std::vector<int> shape(values.sizes().begin(), values.sizes().end());
-        weights.tensors[name] = {shape, std::vector<float>(data, data + values.numel())};
+        tensors[name] = {shape, std::vector<float>(data, data + values.numel())};
     }
 }
 
-void Parameters::copy_from(const Weights& weights) {
+void Parameters::copy_from(const std::map<std::string, WeightTensor>& tensors) {
     torch::NoGradGuard no_grad;
-    for (auto& [name, view] : m_views)
-        view.copy_(torch::tensor(weights.tensor(name).data).view(view.sizes()));
+    for (auto& [name, view] : m_views) {
+        const auto found = tensors.find(name);
+        if (found == tensors.end())
+            throw ArgumentError("tensor " + name, "is missing", "give all tensors of the network");
+        view.copy_(torch::tensor(found->second.data).view(view.sizes()));
+    }
 }
 
 }  // namespace cloth

@@ -27,12 +27,15 @@ ClothState not_moving(const Points& x) {
     return {x, Points::Zero(x.rows(), 3), 0.0};
 }
 
-std::vector<std::string> training_motions() {
-    if (const auto folder = shared_data_path("motions/train")) return list_motions(*folder);
-    return {"01_03", "Boxing_Toes"};
-}
-
 }  // namespace
+
+std::vector<std::string> training_motions() {
+    const auto folder = shared_data_path("motions/train");
+    if (!folder) return {"01_03", "Boxing_Toes"};
+    std::vector<std::string> motions = list_motions(*folder);
+    motions.erase(std::remove_if(motions.begin(), motions.end(), is_held_out), motions.end());
+    return motions;
+}
 
 std::vector<std::string> training_garments() {
     return {"long_top_1000", "long_top",    "shirt_1000",  "shirt",       "pants_1000",

@@ -13,6 +13,10 @@ namespace cloth {
 /// All committed garments of up to 4,000 vertices but tank_top; tshirt comes last.
 std::vector<std::string> training_garments();
 
+/// Names or files of the motions that are trained on: those of the shared data folder, else two of
+/// assimp-testmodels. Those that are kept for validation and reports are left out.
+std::vector<std::string> training_motions();
+
 struct SceneSettings {
     double garment_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
     double shape_share = 0.5;     ///< of garment scenes with a sampled body shape, where available;

@@ -11,6 +11,7 @@
 #include "data/authoring/make_proxy.h"
 #include "data/authoring/sheet.h"
 #include "data/body/garment_skinning.h"
+#include "data/body/smpl_body.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/paths.h"
@@ -22,6 +23,7 @@
 #include "gnn/physics/stepper/embedded_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
+#include "tests/data/body/smpl_files.h"
 
 namespace cloth::guide_snippets_test {
 
@@ -215,6 +217,20 @@ TEST_F(GuideSnippets, TimeLimit) {
     EXPECT_EQ(limited.status().shortenedSteps, 0);
     settings.maxMs = 0.0;
     EXPECT_THROW(btGnnSoftBodySolver(physics, settings), cloth::ArgumentError);
+}
+
+TEST_F(GuideSnippets, BodiesOfSmpl) {
+    const std::string model_file = testing::TempDir() + "guide_model.npz",
+                      motion_file = testing::TempDir() + "guide_motion.npz";
+    cloth::test::write_npz(model_file, cloth::test::small_smpl_model());
+    cloth::test::write_npz(motion_file, cloth::test::small_amass_motion());
+    cloth::Boundary outside;
+    const double t = 0.5, dt = 1.0 / 30.0;
+    const auto model = std::make_shared<const cloth::SmplModel>(cloth::SmplModel::load(model_file));
+    const cloth::SmplBody person(model, cloth::AmassMotion::load(motion_file));
+    outside.obstacles = {person.obstacle(t, t + dt)};
+    EXPECT_EQ(outside.obstacles[0].x1.rows(), 16);
+    EXPECT_NO_THROW(cloth::check_obstacles(outside));
 }
 
 TEST_F(GuideSnippets, Solvers) {

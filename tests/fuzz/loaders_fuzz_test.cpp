@@ -8,14 +8,19 @@
 #include <sstream>
 
 #include "data/authoring/garment_recipe.h"
+#include "data/body/amass_motion.h"
 #include "data/body/body_shapes.h"
 #include "data/body/character_rig.h"
 #include "data/body/motion.h"
 #include "data/body/rig_recipe.h"
+#include "data/body/smpl_model.h"
 #include "data/core/errors.h"
 #include "data/files/mesh_io.h"
+#include "data/files/npy_array.h"
 #include "data/files/point_cache_reader.h"
 #include "gnn/model/weights.h"
+#include "gnn/skinning/skinning_weights.h"
+#include "tests/data/body/smpl_files.h"
 #include "tests/fuzz/file_fuzzing.h"
 #include "tests/fuzz/sample_files.h"
 #include "tests/gnn/model/random_weights.h"
@@ -99,6 +104,48 @@ std::string check_weights(const std::string& path) {
     return "";
 }
 
+std::string check_skinning_weights(const std::string& path) {
+    const SkinningWeights weights = SkinningWeights::load(path);
+    for (const TensorShape& expected : tensor_shapes(weights.config))
+        if (weights.tensor(expected.first).shape != expected.second) return expected.first;
+    const SkinWeights skin = weights.skin({0, 1});
+    if (skin.vertex_count() != weights.config.vertices) return "skin weights of other vertices";
+    return weights.points("worn").allFinite() ? "" : "a place is not finite";
+}
+
+std::string check_npy(const std::string& path) {
+    const NpyArray array = load_npy(path);
+    if (array.is_text) return "";
+    return array.size() == static_cast<std::int64_t>(array.numbers.size()) ? "" : "another size";
+}
+
+std::string check_smpl_model(const std::string& path) {
+    const SmplModel model = SmplModel::load(path);
+    const Eigen::Index vertices = model.mean.rows();
+    if (!in_range(*model.faces, vertices)) return "a corner is out of range";
+    if (model.weights->vertex_count() != vertices) return "weights of another skin";
+    for (const int joint : model.weights->joints)
+        if (joint < 0 || joint >= model.joint_count()) return "no such joint";
+    for (int j = 0; j < model.joint_count(); ++j)
+        if (model.parents[static_cast<size_t>(j)] >= j) return "a parent comes later";
+    const Points rest = model.rest(VectorX::Zero(model.beta_count()));
+    if (!rest.allFinite() || !model.joints(rest).allFinite()) return "a place is not finite";
+    const std::vector<Eigen::Matrix3d> straight(static_cast<size_t>(model.joint_count()),
+                                                Eigen::Matrix3d::Identity());
+    return model.pose_offsets(straight).allFinite() ? "" : "a bend is not finite";
+}
+
+std::string check_amass_motion(const std::string& path) {
+    const AmassMotion motion = AmassMotion::load(path);
+    if (motion.frame_count() < 1 || motion.joint_count() < 1) return "no frames";
+    if (motion.translations.rows() != motion.frame_count()) return "translations are missing";
+    if (!motion.translations.allFinite()) return "a translation is not finite";
+    for (const auto& rotations : motion.rotations)
+        for (const Eigen::Quaterniond& rotation : rotations)
+            if (!(std::abs(rotation.norm() - 1.0) < 1e-6)) return "a rotation is not one";
+    return std::isfinite(motion.duration()) ? "" : "the duration is unusable";
+}
+
 std::string check_rig_recipe(const std::string& path) {
     const RigRecipe recipe = load_rig_recipe(path);
     for (const RigPoint& point : recipe.points)
@@ -136,6 +183,53 @@ std::string weights_file(const std::string& variant) {
     const std::string bytes = read(path.string());
     std::filesystem::remove(path);
     return bytes;
+}
+
+std::string skinning_weights_file() {
+    SkinningWeights weights;
+    weights.config.garment = "patch";
+    weights.config.vertices = 3;
+    weights.config.joints = {"Hips", "Spine"};
+    weights.config.ages = {0, 1};
+    weights.config.layers = {2};
+    for (const auto& [name, shape] : tensor_shapes(weights.config)) {
+        const size_t count =
+            static_cast<size_t>(shape[0]) * static_cast<size_t>(shape.size() > 1 ? shape[1] : 1);
+        weights.tensors[name] = {shape, std::vector<float>(count, 0.5f)};
+    }
+    const auto path = std::filesystem::temp_directory_path() / "fuzz_sample_skinning";
+    weights.save(path.string());
+    const std::string bytes = read(path.string());
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+/// Not compressed, so that what is changed is more often a number than the stream.
+std::string npz_file(const std::map<std::string, std::string>& arrays) {
+    const auto path = std::filesystem::temp_directory_path() / "fuzz_sample.npz";
+    write_npz(path.string(), arrays, /*compressed=*/false);
+    const std::string bytes = read(path.string());
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+/// Damages each array in turn. What is damaged in the archive itself fails at its check sums.
+void fuzz_arrays(const std::map<std::string, std::string>& arrays,
+                 const std::function<std::string(const std::string& path)>& check) {
+    for (const auto& entry : arrays) {
+        const auto load = [&arrays, &check, name = entry.first](const std::string& path) {
+            struct Removed {
+                std::string path;
+                ~Removed() { std::filesystem::remove(path); }
+            };
+            std::map<std::string, std::string> changed = arrays;
+            changed[name] = read(path);
+            const Removed archive{path + ".npz"};
+            write_npz(archive.path, changed, /*compressed=*/false);
+            return check(archive.path);
+        };
+        fuzz_files({"npy", entry.second, load, /*rounds=*/60});
+    }
 }
 
 std::string zipped_collada_file() {
@@ -201,6 +295,25 @@ TEST(LoadersFuzz, Mdd) {
 TEST(LoadersFuzz, Weights) {
     fuzz_files({"safetensors", weights_file("fast"), check_weights});
     fuzz_files({"safetensors", weights_file("hood_fast"), check_weights});
+}
+
+TEST(LoadersFuzz, SkinningWeights) {
+    fuzz_files({"safetensors", skinning_weights_file(), check_skinning_weights});
+}
+
+TEST(LoadersFuzz, Npy) {
+    fuzz_files({"npy", npy({2, 3}, std::vector<double>{1, 2, 3, 4, 5, 6}), check_npy});
+    fuzz_files({"npy", npy("<f4", {2, 2}, std::string(16, '\1'), /*fortran=*/true), check_npy});
+}
+
+TEST(LoadersFuzz, SmplModel) {
+    fuzz_files({"npz", npz_file(small_smpl_model()), check_smpl_model});
+    fuzz_arrays(small_smpl_model(), check_smpl_model);
+}
+
+TEST(LoadersFuzz, AmassMotion) {
+    fuzz_files({"npz", npz_file(small_amass_motion()), check_amass_motion});
+    fuzz_arrays(small_amass_motion(), check_amass_motion);
 }
 
 TEST(LoadersFuzz, RigRecipe) {

@@ -4,6 +4,7 @@
 
 #include "data/authoring/sheet.h"
 #include "demos/compare/arguments.h"
+#include "demos/compare/body_scene.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
 namespace cloth::solver_factory_test {
@@ -110,6 +111,26 @@ TEST(SolverFactory, ProxiesAreRefusedByName) {
           std::pair("quasi-newton~tshirt_1000", "from the coarse mesh"),
           std::pair("nothing~120", "xpbd-N"), std::pair("xpbd-20~120@10", "no limit")})
         EXPECT_NE(refused(name).find(word), std::string::npos) << name << ": " << refused(name);
+}
+
+TEST(SolverFactory, SkinningNetworksAreOfTheirGarmentAlone) {
+    BodySceneSettings settings;
+    settings.garment = "tshirt_1000";
+    settings.frames = 1;
+    for (const bool limbs : {false, true}) {
+        settings.limbs = limbs;
+        const BodyScene scene(settings);
+        for (const std::string name : {"skinning", "skinning-raw"}) {
+            const auto stepper = make_solver(name, scene, {});
+            EXPECT_EQ(stepper->name(), name);
+            EXPECT_NEAR(stepper->fixed_dt(), 1.0 / 30.0, 1e-12);
+            ClothState state = scene.start();
+            EXPECT_TRUE(stepper->step(scene.frame_boundary(0), 1.0 / 30.0, state).finite);
+        }
+    }
+    for (const char* word : {"solver skinning", "garment sheet", "train_skinning"})
+        EXPECT_NE(refusal("skinning").find(word), std::string::npos) << refusal("skinning");
+    EXPECT_NE(refusal("skinning+3").find("skinning-raw"), std::string::npos);
 }
 
 TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
