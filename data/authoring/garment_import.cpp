@@ -39,7 +39,9 @@ double area_of(const TriMesh& mesh) {
 }
 
 void check_skin(const TriMesh& skin) {
-    validate_mesh("character", skin);
+    if (skin.faces.rows() == 0 || !skin.vertices.allFinite())
+        throw ArgumentError("character", "it has no faces, or a vertex that is not finite",
+                            "export it again");
     if (signed_volume(skin) < 0.0)
         throw ArgumentError("character", "it is inside out: its faces look inwards",
                             "turn its faces (flip normals) in a mesh editor");
