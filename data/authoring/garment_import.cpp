@@ -198,7 +198,7 @@ class Importer {
         lead_out(result.worn);
         note_strain(piece, result);
         if (m_settings.vertices > 0) {
-            result.worn = remesh(result.worn, m_settings.vertices);
+            result.worn = remesh(result.worn, m_settings.vertices, Folds::keep);
             lead_out(result.worn);
         }
         result.support = find_support(result.worn, m_skin);

@@ -3,8 +3,10 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,7 @@ using VertexIndex = SurfaceMesh::Vertex_index;
 constexpr double kGoodGarmentAngle = 25.0;  // degrees at which the smoothing stops
 constexpr int kFirstRounds = 5;             // at least: the remesher leaves the borders wavy
 constexpr int kSmoothingRounds = 60;
+constexpr double kFolded = -0.5;  // cosine between the normals at a fold, at most
 
 SurfaceMesh to_cgal(const TriMesh& mesh) {
     SurfaceMesh result;
@@ -59,12 +62,37 @@ TriMesh from_cgal(SurfaceMesh& mesh) {
     return result;
 }
 
-TriMesh isotropic(const TriMesh& surface, double edge_length, int rounds) {
+/// Edges at which the cloth is folded over, as a collar is: its faces meet by less than 60 degrees.
+std::vector<std::array<int, 2>> folds(const TriMesh& mesh) {
+    const Points normals = face_normals(mesh.vertices, mesh.faces);
+    std::map<std::array<int, 2>, int> first_face;
+    std::vector<std::array<int, 2>> found;
+    for (int f = 0; f < mesh.faces.rows(); ++f)
+        for (int c = 0; c < 3; ++c) {
+            const int a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
+            const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
+            const auto [other, is_new] = first_face.emplace(edge, f);
+            if (!is_new && normals.row(f).dot(normals.row(other->second)) < kFolded)
+                found.push_back(edge);
+        }
+    return found;
+}
+
+TriMesh isotropic(const TriMesh& surface, double edge_length, int rounds, Folds keep) {
     SurfaceMesh mesh = to_cgal(surface);
+    auto is_fold = mesh.add_property_map<SurfaceMesh::Edge_index, bool>("e:fold", false).first;
+    if (keep == Folds::keep)
+        for (const auto& [a, b] : folds(surface)) {
+            const auto halfedge =
+                mesh.halfedge(VertexIndex(static_cast<SurfaceMesh::size_type>(a)),
+                              VertexIndex(static_cast<SurfaceMesh::size_type>(b)));
+            if (halfedge != SurfaceMesh::null_halfedge()) is_fold[mesh.edge(halfedge)] = true;
+        }
     CGAL::Polygon_mesh_processing::isotropic_remeshing(
         mesh.faces(), edge_length, mesh,
         CGAL::parameters::number_of_iterations(static_cast<unsigned>(rounds))
             .number_of_relaxation_steps(3)
+            .edge_is_constrained_map(is_fold)
             .relax_constraints(false));
     return from_cgal(mesh);
 }
@@ -145,8 +173,7 @@ void restore_borders(TriMesh& mesh, const TriMesh& original) {
 
 /// Moves inner vertices towards the area-weighted mean of the centroids of their triangles and back
 /// onto the surface.
-void smooth_inside(TriMesh& mesh, const std::vector<char>& on_border,
-                   const SurfaceDistance& surface) {
+void smooth_inside(TriMesh& mesh, const std::vector<char>& stays, const SurfaceDistance& surface) {
     Points moment = Points::Zero(mesh.vertices.rows(), 3);
     VectorX weight = VectorX::Zero(mesh.vertices.rows());
     const VectorX areas = face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm();
@@ -161,37 +188,41 @@ void smooth_inside(TriMesh& mesh, const std::vector<char>& on_border,
         }
     }
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
-        if (!on_border[static_cast<size_t>(i)])
+        if (!stays[static_cast<size_t>(i)])
             mesh.vertices.row(i) =
                 surface.nearest(moment.row(i).transpose() / weight[i]).point.transpose();
 }
 
-std::vector<char> border_flags(const TriMesh& mesh) {
+/// Vertices on borders and folds: smoothing would draw them inwards.
+std::vector<char> edge_flags(const TriMesh& mesh, Folds keep) {
     std::vector<char> flags(static_cast<size_t>(mesh.vertices.rows()), 0);
     for (const std::vector<int>& loop : boundary_loops(mesh.faces))
         for (int i : loop) flags[static_cast<size_t>(i)] = 1;
+    if (keep == Folds::smooth) return flags;
+    for (const auto& fold : folds(mesh))
+        for (int i : fold) flags[static_cast<size_t>(i)] = 1;
     return flags;
 }
 
 }  // namespace
 
-TriMesh remesh(const TriMesh& surface, int target_vertices) {
+TriMesh remesh(const TriMesh& surface, int target_vertices, Folds keep) {
     const SurfaceDistance original(surface);
     // The remesher's edges come out shorter than asked: 10 % more meets the number at once, mostly.
     double edge_length = 1.1 * std::sqrt(2.0 / std::sqrt(3.0) * area(surface) / target_vertices);
     TriMesh mesh;
     for (int attempt = 0; attempt < 8; ++attempt) {
-        mesh = isotropic(surface, edge_length, 8);
+        mesh = isotropic(surface, edge_length, 8, keep);
         const double ratio = static_cast<double>(mesh.vertices.rows()) / target_vertices;
         if (std::abs(ratio - 1.0) < 0.015) break;
         edge_length *= std::sqrt(ratio);
     }
     restore_borders(mesh, surface);
-    const std::vector<char> on_border = border_flags(mesh);
+    const std::vector<char> stays = edge_flags(mesh, keep);
     TriMesh best;
     double best_angle = -1.0;
     for (int round = 0; round < kSmoothingRounds && best_angle < kGoodGarmentAngle; ++round) {
-        smooth_inside(mesh, on_border, original);
+        smooth_inside(mesh, stays, original);
         flip_edges(mesh);
         const double angle = smallest_angle(mesh);
         if (round < kFirstRounds || angle < best_angle) continue;
