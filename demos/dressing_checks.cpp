@@ -11,15 +11,15 @@ namespace cloth {
 
 void check_height(const std::string& file, const WeldedCharacter& skin) {
     if (skin.height() >= 0.1 && skin.height() <= 10.0) return;
-    std::string units;
+    std::string factors;
+    char text[96];
     for (const LengthUnit& unit : plausible_units(skin.height(), 1.0, 2.5)) {
-        char text[96];
-        std::snprintf(text, sizeof text, "%s%.4g if the file is in %s", units.empty() ? "" : ", ",
-                      unit.metres, unit.plural);
-        units += text;
+        std::snprintf(text, sizeof text, "%.4g if the file is in %s, ", unit.metres, unit.plural);
+        factors += text;
     }
-    const std::string remedy = "give --character-scale, the metres per unit of the file" +
-                               (units.empty() ? "" : ": multiply by " + units);
+    std::snprintf(text, sizeof text, "%.3g makes it 1.7 m high", 1.7 / skin.height());
+    const std::string remedy =
+        "give --character-scale, the metres per unit of the file. Times " + factors + text;
     throw ArgumentError(file, "it is " + std::to_string(skin.height()) + " m high", remedy);
 }
 

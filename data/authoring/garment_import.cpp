@@ -22,10 +22,11 @@ namespace cloth {
 
 namespace {
 
-constexpr double fine_edge = 0.03;      // longer ones cannot follow a limb (m)
-constexpr double sharp_angle = 8.0;     // solvers dislike sharper ones (degrees)
-constexpr double strong_strain = 0.25;  // of the fit
-constexpr double overlap = 0.04;        // garments as near as this lie over each other (m)
+constexpr double fine_edge = 0.03;     // longer ones cannot follow a limb (m)
+constexpr double sharp_angle = 8.0;    // solvers dislike sharper ones (degrees)
+constexpr double strong_strain = 0.3;  // of the fit
+constexpr double torn = 1.0;           // beyond: it went through a limb
+constexpr double overlap = 0.04;       // garments as near as this lie over each other (m)
 
 template <typename... Values>
 std::string text(const char* format, Values... values) {
@@ -39,9 +40,7 @@ double area_of(const TriMesh& mesh) {
 }
 
 void check_skin(const TriMesh& skin) {
-    if (skin.faces.rows() == 0 || !skin.vertices.allFinite())
-        throw ArgumentError("character", "it has no faces, or a vertex that is not finite",
-                            "export it again");
+    validate_mesh("character", skin);
     if (signed_volume(skin) < 0.0)
         throw ArgumentError("character", "it is inside out: its faces look inwards",
                             "turn its faces (flip normals) in a mesh editor");
@@ -60,14 +59,21 @@ void check_vertices(const TriMesh& mesh) {
 class Importer {
  public:
     Importer(const TriMesh& skin, const GarmentImportSettings& settings)
-        : m_settings(settings), m_skin(skin) {}
+        : m_settings(settings), m_skin(skin), m_clearance(settings.clearance) {}
 
     GarmentImport run(const TriMesh& mesh) {
         m_import.read = mesh;
+        const double open = border_share(m_skin.surface().faces);
+        if (open > 0.0)
+            warn(
+                text("the character is not closed (%.2g %% of its edges are borders): beside its "
+                     "holes inside and outside cannot be told apart",
+                     1e2 * open));
         TriMesh garment = weld(mesh);
         garment = repair(garment);
         garment = leave_out_inner_side(std::move(garment));
         for (const TriMesh& piece : pieces(garment)) m_import.garments.push_back(fit(piece));
+        m_import.clearance = m_clearance;
         return std::move(m_import);
     }
 
@@ -220,14 +226,27 @@ class Importer {
         share = count / static_cast<double>(mesh.vertices.rows());
     }
 
-    void lead_out(TriMesh& mesh) const {
-        if (push_out(mesh, m_skin, m_settings.clearance) >= m_settings.clearance) return;
+    /// As far as the clearance asks for, or less where the skin leaves no room for it.
+    void lead_out(TriMesh& mesh) {
+        const TriMesh before = mesh;
+        for (const double clearance : {m_clearance, 3e-3, 2e-3, 1e-3}) {
+            if (clearance > m_clearance) continue;
+            mesh = before;
+            if (push_out(mesh, m_skin, clearance) < clearance) continue;
+            if (clearance < m_clearance)
+                warn(
+                    text("the skin leaves no room for a clearance of %.1f mm; %.0f mm was taken, "
+                         "and bake needs --clearance %g",
+                         1e3 * m_clearance, 1e3 * clearance, clearance));
+            m_clearance = clearance;
+            return;
+        }
         Eigen::Index deepest = 0;
-        double depth = m_settings.clearance;
+        double depth = m_clearance;
         int count = 0;
         for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
             const double distance = m_skin.nearest(mesh.vertices.row(i)).distance;
-            count += distance < m_settings.clearance;
+            count += distance < m_clearance;
             if (distance < depth) deepest = i, depth = distance;
         }
         const Vec3 at = mesh.vertices.row(deepest);
@@ -235,7 +254,7 @@ class Importer {
             "garment",
             text("it cannot be led out of the skin: %d vertices stay nearer than %.1f mm, the "
                  "deepest at %.1f mm, (%.3f, %.3f, %.3f)",
-                 count, 1e3 * m_settings.clearance, 1e3 * depth, at.x(), at.y(), at.z()),
+                 count, 1e3 * m_clearance, 1e3 * depth, at.x(), at.y(), at.z()),
             "the character overlaps itself there, or has no room for cloth: open its pose, leave "
             "out inner parts with --skin, or give a smaller --clearance");
     }
@@ -249,6 +268,14 @@ class Importer {
         std::sort(strains.begin(), strains.end());
         result.strain_low = strains[strains.size() / 100];
         result.strain_high = strains[strains.size() * 99 / 100];
+        if (result.strain_high > torn)
+            throw ArgumentError(
+                "garment",
+                text("leading it out of the skin would stretch it by %.0f %%: it goes through the "
+                     "body",
+                     1e2 * result.strain_high),
+                "export garment and character from one scene in one pose; check unit, origin and "
+                "axes, or give --move");
     }
 
     void note_result(ImportedGarment& result) {
@@ -290,6 +317,7 @@ class Importer {
 
     GarmentImportSettings m_settings;
     SurfaceDistance m_skin;
+    double m_clearance;  // that the skin leaves room for (m)
     GarmentImport m_import;
 };
 

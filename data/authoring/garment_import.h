@@ -45,8 +45,9 @@ struct ImportedGarment {
 struct GarmentImport {
     TriMesh read;                           ///< before anything was changed
     std::vector<ImportedGarment> garments;  ///< pieces, largest area first
-    std::vector<std::string> changes;       ///< what was done, a sentence each
-    std::vector<std::string> warnings;      ///< what may go wrong, and the remedy
+    double clearance = 0.0;             ///< that the skin left room for (m): the setting, or less
+    std::vector<std::string> changes;   ///< what was done, a sentence each
+    std::vector<std::string> warnings;  ///< what may go wrong, and the remedy
 };
 
 /// Makes garments that can be simulated of a mesh that was modelled around a body: welds, mends and
@@ -60,8 +61,8 @@ struct GarmentImport {
 /// @param skin  closed, faces outwards, in the pose that the mesh was modelled on (m)
 /// @throws ArgumentError saying what is wrong and the remedy: settings out of range, a mesh without
 ///         faces or with a vertex that is not finite, edges that cannot be mended, a one-sided
-///         piece, a skin that is inside out, a garment most of which is inside the skin or that
-///         cannot be led out of it
+///         piece, a skin that is inside out, a garment most of which is inside the skin, that
+///         cannot be led out of it, or only by stretching it to twice its size
 GarmentImport import_garment(const TriMesh& mesh, const TriMesh& skin,
                              const GarmentImportSettings& settings = {});
 

@@ -110,6 +110,10 @@ std::string next_text(const ImportOptions& options, const GarmentImport& import,
             text += number;
         }
         text += " --garment " + written[k].file;
+        if (import.clearance < options.import.clearance) {
+            std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
+            text += number;
+        }
         if (support.kind == GarmentSupport::Kind::pins) {
             std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low,
                           support.pin_high);

@@ -24,19 +24,39 @@ std::string size_text(const Points& x) {
     return text;
 }
 
+/// The move that puts a garment for a person who stands on the origin on this one.
+std::string move_text(const TriMesh& skin) {
+    const VectorX areas = face_area_vectors(skin.vertices, skin.faces).rowwise().norm();
+    Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+    for (Eigen::Index f = 0; f < areas.size(); ++f)
+        for (int c = 0; c < 3; ++c)
+            centre += areas[f] / (3.0 * areas.sum()) * skin.vertices.row(skin.faces(f, c));
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "--move %.2f %.2f %.2f brings what was made for a person on the origin about here",
+        centre.x(), skin.vertices.col(1).minCoeff(), centre.z());
+    return text;
+}
+
 /// What is said of a garment that is elsewhere.
 [[noreturn]] void refuse_place(const ImportOptions& options, const Points& in_file,
-                               const Points& garment, const Points& skin) {
+                               const Points& garment, const TriMesh& skin) {
     std::string remedy;
-    for (const PlaceGuess& guess : guess_place(in_file, skin))
+    for (const PlaceGuess& guess : guess_place(in_file, skin.vertices))
         remedy += (remedy.empty() ? "" : ", or ") + std::string("--unit ") + guess.unit.name +
                   (guess.z_up ? " --up z" : "") + " if the file is in " + guess.unit.plural +
                   (guess.z_up ? " with z up" : "");
-    if (remedy.empty())
-        remedy = "--unit or --scale, --up and --move; or export both files from one scene";
+    if (remedy.empty()) {
+        remedy = "give --unit or --scale, --up and --move, or export both files from one scene; ";
+        const std::vector<LengthUnit> sizes = plausible_sizes(in_file, skin.vertices);
+        for (const LengthUnit& unit : sizes)
+            remedy += std::string("in ") + unit.plural + " its size would fit, ";
+        remedy += move_text(skin);
+    }
     throw ArgumentError(options.file,
                         "it is not where the character is: " + size_text(garment) +
-                            " m; the character: " + size_text(skin) + " m",
+                            " m; the character: " + size_text(skin.vertices) + " m",
                         remedy);
 }
 
@@ -81,7 +101,7 @@ TriMesh load_clothes(const ImportOptions& options, const Wearer& wearer) {
     mesh.vertices *= options.scale;
     mesh.vertices.rowwise() += options.move.transpose();
     if (!is_in_place(mesh.vertices, wearer.skin.vertices))
-        refuse_place(options, in_file, mesh.vertices, wearer.skin.vertices);
+        refuse_place(options, in_file, mesh.vertices, wearer.skin);
     return mesh;
 }
 
