@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "data/body/garment_place.h"
 #include "data/core/mesh_repair.h"
 #include "tests/data/authoring/broken_garments.h"
@@ -82,14 +85,15 @@ TEST(GarmentPlace, TheUnitAndTheUpAxisAreGuessed) {
     const Points x = worn_garment("tshirt_1000").vertices;
     for (const LengthUnit& unit : length_units()) {
         const auto guesses = guess_place(x / unit.metres, person().vertices);
-        ASSERT_GE(guesses.size(), 1u) << unit.name;
-        EXPECT_STREQ(guesses[0].unit.name, unit.name);
-        EXPECT_FALSE(guesses[0].z_up);
+        EXPECT_TRUE(std::any_of(guesses.begin(), guesses.end(), [&](const PlaceGuess& guess) {
+            return guess.unit.name == std::string(unit.name) && !guess.z_up;
+        })) << unit.name;
+        EXPECT_LE(guesses.size(), 2u) << "inches and centimetres may both fit";
     }
     Points z_up(x.rows(), 3);
     z_up << 100 * x.col(0), -100 * x.col(2), 100 * x.col(1);
     const auto guesses = guess_place(z_up, person().vertices);
-    ASSERT_EQ(guesses.size(), 1u);
+    ASSERT_GE(guesses.size(), 1u);
     EXPECT_STREQ(guesses[0].unit.name, "cm");
     EXPECT_TRUE(guesses[0].z_up);
     EXPECT_TRUE(with_y_up(z_up).isApprox(100 * x));
