@@ -25,6 +25,7 @@ namespace {
 constexpr double fine_edge = 0.03;     // longer ones cannot follow a limb (m)
 constexpr double sharp_angle = 8.0;    // solvers dislike sharper ones (degrees)
 constexpr double strong_strain = 0.3;  // of the fit
+constexpr double farthest = 0.3;       // from the skin: nothing is worn there (m)
 constexpr double torn = 1.0;           // beyond: it went through a limb
 constexpr double overlap = 0.04;       // garments as near as this lie over each other (m)
 
@@ -192,6 +193,7 @@ class Importer {
         result.vertices_before = static_cast<int>(piece.vertices.rows());
         result.angle_before = smallest_angle(piece);
         measure_inside(piece, result.inside_before, result.deepest_before);
+        check_distance(piece);
         if (result.inside_before > m_settings.most_inside)
             throw ArgumentError(
                 "garment",
@@ -214,6 +216,16 @@ class Importer {
                                           m_settings.band_width, m_settings.band_ratio);
         note_result(result);
         return result;
+    }
+
+    void check_distance(const TriMesh& piece) const {
+        const double away = smallest_clearance(piece, m_skin);
+        if (away > farthest)
+            throw ArgumentError("garment",
+                                text("a piece of %d vertices is %.2f m from the skin",
+                                     static_cast<int>(piece.vertices.rows()), away),
+                                "check unit, origin and axes, or give --move; or leave such pieces "
+                                "out with --mesh or --smallest-piece");
     }
 
     void measure_inside(const TriMesh& mesh, double& share, double& deepest) const {

@@ -61,8 +61,8 @@ struct GarmentImport {
 /// @param skin  closed, faces outwards, in the pose that the mesh was modelled on (m)
 /// @throws ArgumentError saying what is wrong and the remedy: settings out of range, a mesh without
 ///         faces or with a vertex that is not finite, edges that cannot be mended, a one-sided
-///         piece, a skin that is inside out, a garment most of which is inside the skin, that
-///         cannot be led out of it, or only by stretching it to twice its size
+///         piece, a skin that is inside out, a garment that is 0.3 m from the skin, most of which
+///         is inside it, that cannot be led out of it, or only by stretching it to twice its size
 GarmentImport import_garment(const TriMesh& mesh, const TriMesh& skin,
                              const GarmentImportSettings& settings = {});
 

@@ -78,6 +78,8 @@ void add_work(CLI::App& app, GarmentImportSettings& work) {
 void check(ImportOptions& options, const Units& units) {
     if (!units.garment.empty()) options.scale = length_unit(units.garment).metres;
     if (!units.character.empty()) options.skin.scale = length_unit(units.character).metres;
+    if (!units.move.empty() && units.move.size() != 3)
+        throw UsageError("--move: give three numbers");
     if (!units.move.empty()) options.move = Vec3(units.move[0], units.move[1], units.move[2]);
     options.z_up = units.up == "z";
     check_range("--scale", options.scale, 1e-6, 1e6);

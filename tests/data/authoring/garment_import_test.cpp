@@ -166,6 +166,8 @@ TEST(GarmentImport, WhatCannotBeUsedIsRefusedWithARemedy) {
     strip.vertices.rowwise() += Eigen::RowVector3d(0, 1.1, 0);
     TriMesh within = shirt;
     within.vertices -= 0.04 * vertex_normals(shirt.vertices, shirt.faces);
+    TriMesh away = shirt;
+    away.vertices.col(2).array() += 0.7;
     TriMesh beside = shirt;
     beside.vertices.col(2).array() += 0.12;
     for (const auto& [mesh, on, part] : std::vector<std::tuple<TriMesh, TriMesh, std::string>>{
@@ -175,6 +177,7 @@ TEST(GarmentImport, WhatCannotBeUsedIsRefusedWithARemedy) {
              {strip, person(), "one side only"},
              {within, person(), "inside the skin"},
              {beside, person(), "led out of the skin"},
+             {away, person(), "m from the skin"},
              {shirt, turned(person()), "character: it is inside out"},
              {shirt, {person().vertices, Faces(0, 3)}, "character"}}) {
         const std::string message = refusal(mesh, on);
