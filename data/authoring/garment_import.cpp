@@ -295,7 +295,10 @@ class Importer {
         measure_inside(result.worn, result.inside, deepest);
         result.clearance = smallest_clearance(result.worn, m_skin);
         const TriMesh rest{result.rest, result.worn.faces};
-        validate_mesh("garment", rest);
+        for (const TriMesh& mesh : {rest, result.worn})
+            if (!(face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm().minCoeff() > 1e-14))
+                throw ArgumentError("garment", "fitting it squeezed a face to nothing",
+                                    "remesh it with --vertices, or with another number of them");
         result.angle = smallest_angle(rest);
         const auto edges = undirected_edges(result.worn.faces);
         for (const auto& [a, b] : edges)
