@@ -1,15 +1,26 @@
 #include "demos/dressing_checks.h"
 
+#include <cstdio>
+
 #include "data/body/garment_fit.h"
 #include "data/core/errors.h"
+#include "data/core/length_units.h"
 #include "data/core/surface_distance.h"
 
 namespace cloth {
 
 void check_height(const std::string& file, const WeldedCharacter& skin) {
-    if (skin.height() < 0.1 || skin.height() > 10.0)
-        throw ArgumentError(file, "it is " + std::to_string(skin.height()) + " m high",
-                            "give --character-scale, such as 0.01 for centimetres");
+    if (skin.height() >= 0.1 && skin.height() <= 10.0) return;
+    std::string factors;
+    char text[96];
+    for (const LengthUnit& unit : plausible_units(skin.height(), 1.0, 2.5)) {
+        std::snprintf(text, sizeof text, "%.4g if the file is in %s, ", unit.metres, unit.plural);
+        factors += text;
+    }
+    std::snprintf(text, sizeof text, "%.3g makes it 1.7 m high", 1.7 / skin.height());
+    const std::string remedy =
+        "give --character-scale, the metres per unit of the file. Times " + factors + text;
+    throw ArgumentError(file, "it is " + std::to_string(skin.height()) + " m high", remedy);
 }
 
 std::vector<int> vertices_between(const Points& x, const std::vector<double>& heights) {

@@ -3,6 +3,7 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -28,6 +29,7 @@ constexpr double kGoodGarmentAngle = 25.0;  // degrees at which the smoothing st
 constexpr int kFirstRounds = 5;             // at least: the remesher leaves the borders wavy
 constexpr int kSmoothingRounds = 60;
 constexpr double kKeptSpacing = 0.9;  // of vertices that are kept (edge lengths)
+constexpr double kFolded = -0.5;      // cosine between the normals at a fold, at most
 
 SurfaceMesh to_cgal(const TriMesh& mesh) {
     SurfaceMesh result;
@@ -61,12 +63,37 @@ TriMesh from_cgal(SurfaceMesh& mesh) {
     return result;
 }
 
-TriMesh isotropic(const TriMesh& surface, double edge_length, int rounds) {
+/// Edges at which the cloth is folded over, as a collar is: its faces meet by less than 60 degrees.
+std::vector<std::array<int, 2>> folds(const TriMesh& mesh) {
+    const Points normals = face_normals(mesh.vertices, mesh.faces);
+    std::map<std::array<int, 2>, int> first_face;
+    std::vector<std::array<int, 2>> found;
+    for (int f = 0; f < mesh.faces.rows(); ++f)
+        for (int c = 0; c < 3; ++c) {
+            const int a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
+            const std::array<int, 2> edge{std::min(a, b), std::max(a, b)};
+            const auto [other, is_new] = first_face.emplace(edge, f);
+            if (!is_new && normals.row(f).dot(normals.row(other->second)) < kFolded)
+                found.push_back(edge);
+        }
+    return found;
+}
+
+TriMesh isotropic(const TriMesh& surface, double edge_length, int rounds, Folds keep) {
     SurfaceMesh mesh = to_cgal(surface);
+    auto is_fold = mesh.add_property_map<SurfaceMesh::Edge_index, bool>("e:fold", false).first;
+    if (keep == Folds::keep)
+        for (const auto& [a, b] : folds(surface)) {
+            const auto halfedge =
+                mesh.halfedge(VertexIndex(static_cast<SurfaceMesh::size_type>(a)),
+                              VertexIndex(static_cast<SurfaceMesh::size_type>(b)));
+            if (halfedge != SurfaceMesh::null_halfedge()) is_fold[mesh.edge(halfedge)] = true;
+        }
     CGAL::Polygon_mesh_processing::isotropic_remeshing(
         mesh.faces(), edge_length, mesh,
         CGAL::parameters::number_of_iterations(static_cast<unsigned>(rounds))
             .number_of_relaxation_steps(3)
+            .edge_is_constrained_map(is_fold)
             .relax_constraints(false));
     return from_cgal(mesh);
 }
@@ -210,10 +237,14 @@ void smooth_inside(TriMesh& mesh, const std::vector<char>& fixed, const SurfaceD
                 surface.nearest(moment.row(i).transpose() / weight[i]).point.transpose();
 }
 
-std::vector<char> border_flags(const TriMesh& mesh) {
+/// Vertices on borders and folds: smoothing would draw them inwards.
+std::vector<char> edge_flags(const TriMesh& mesh, Folds keep) {
     std::vector<char> flags(static_cast<size_t>(mesh.vertices.rows()), 0);
     for (const std::vector<int>& loop : boundary_loops(mesh.faces))
         for (int i : loop) flags[static_cast<size_t>(i)] = 1;
+    if (keep == Folds::smooth) return flags;
+    for (const auto& fold : folds(mesh))
+        for (int i : fold) flags[static_cast<size_t>(i)] = 1;
     return flags;
 }
 
@@ -233,7 +264,7 @@ std::vector<int> spaced(const Points& vertices, const std::vector<int>& kept, do
 /// is nearer than `reach`, and fixes it.
 void keep_inside(TriMesh& mesh, const TriMesh& original, const std::vector<int>& kept, double reach,
                  std::vector<char>& fixed) {
-    const std::vector<char> border = border_flags(original);
+    const std::vector<char> border = edge_flags(original, Folds::smooth);
     for (const int i : kept) {
         if (border[static_cast<size_t>(i)]) continue;
         Eigen::Index nearest = -1;
@@ -252,21 +283,22 @@ void keep_inside(TriMesh& mesh, const TriMesh& original, const std::vector<int>&
 
 }  // namespace
 
-TriMesh remesh(const TriMesh& surface, int target_vertices, const std::vector<int>& kept) {
+TriMesh remesh(const TriMesh& surface, int target_vertices, const std::vector<int>& kept,
+               Folds keep) {
     const SurfaceDistance original(surface);
     const double ideal = std::sqrt(2.0 / std::sqrt(3.0) * area(surface) / target_vertices);
     // The remesher's edges come out shorter than asked: 10 % more meets the number at once, mostly.
     double edge_length = 1.1 * ideal;
     TriMesh mesh;
     for (int attempt = 0; attempt < 8; ++attempt) {
-        mesh = isotropic(surface, edge_length, 8);
+        mesh = isotropic(surface, edge_length, 8, keep);
         const double ratio = static_cast<double>(mesh.vertices.rows()) / target_vertices;
         if (std::abs(ratio - 1.0) < 0.015) break;
         edge_length *= std::sqrt(ratio);
     }
     const std::vector<int> apart = spaced(surface.vertices, kept, kKeptSpacing * ideal);
     restore_borders(mesh, surface, apart);
-    std::vector<char> fixed = border_flags(mesh);
+    std::vector<char> fixed = edge_flags(mesh, keep);
     keep_inside(mesh, surface, apart, ideal, fixed);
     TriMesh best;
     double best_angle = -1.0;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "data/authoring/garment_recipe.h"
 
 namespace cloth {
@@ -9,5 +11,11 @@ namespace cloth {
 /// @param worn  |V| x 3 (m)
 /// @param top   height of the upper edge (m)
 Points without_stretch(const Points& worn, double top, const GarmentRecipe& recipe);
+
+/// The same for a garment of any cut, whose upper edge need not be level: the band is `width` (m)
+/// below the nearest point of that edge, and `ratio` times as long as it is worn.
+/// @param upper_edge  a loop of vertices
+Points without_stretch(const Points& worn, const std::vector<int>& upper_edge, double width,
+                       double ratio);
 
 }  // namespace cloth

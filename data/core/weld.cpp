@@ -1,5 +1,6 @@
 #include "data/core/weld.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -14,6 +15,8 @@ namespace cloth {
 namespace {
 
 using Cell = std::array<long, 3>;
+
+constexpr double farthest = 1e9;  // from the origin (m): beyond, cells have no numbers
 
 /// Vertices that stay, by the cell of a grid as wide as the tolerance: what is near is in the cell
 /// of a point or in one of its neighbours.
@@ -42,7 +45,7 @@ class NearVertices {
 
  private:
     Cell cell_of(const Vec3& p) const {
-        const double size = m_tolerance > 0.0 ? m_tolerance : 1e-6;
+        const double size = std::max(m_tolerance, 1e-6);
         return {std::lround(p[0] / size), std::lround(p[1] / size), std::lround(p[2] / size)};
     }
 
@@ -55,6 +58,9 @@ void check_mesh(const TriMesh& mesh) {
         if (!mesh.vertices.row(i).allFinite())
             throw ArgumentError("weld_mesh: vertex " + std::to_string(i), "it is not finite",
                                 "give finite positions in metres");
+    if (mesh.vertices.size() > 0 && mesh.vertices.cwiseAbs().maxCoeff() > farthest)
+        throw ArgumentError("weld_mesh: vertices", "one is a million kilometres away",
+                            "give positions in metres");
     if (mesh.faces.size() > 0 &&
         (mesh.faces.minCoeff() < 0 || mesh.faces.maxCoeff() >= mesh.vertices.rows()))
         throw ArgumentError("weld_mesh: faces", "one refers to a vertex that does not exist",

@@ -84,8 +84,11 @@ const aiScene& read_scene(const std::string& path, Assimp::Importer& importer) {
 /// Builds the welded mesh, one placed aiMesh after the other.
 class MeshBuilder {
  public:
-    MeshBuilder(std::string path, std::map<std::string, FilePositions> file_positions)
-        : m_path(std::move(path)), m_file_positions(std::move(file_positions)) {}
+    MeshBuilder(std::string path, std::map<std::string, FilePositions> file_positions,
+                FacesWithoutArea without_area)
+        : m_path(std::move(path)),
+          m_file_positions(std::move(file_positions)),
+          m_without_area(without_area) {}
 
     /// Meshes of one geometry (assimp cuts it by material) share their vertices.
     void add(const std::vector<Placement>& parts) {
@@ -173,7 +176,8 @@ class MeshBuilder {
             const Vec3 a = m_vertices[static_cast<size_t>(face[0])];
             const Vec3 b = m_vertices[static_cast<size_t>(face[1])];
             const Vec3 c = m_vertices[static_cast<size_t>(face[2])];
-            if (!(0.5 * (b - a).cross(c - a).norm() > 1e-14))
+            if (m_without_area == FacesWithoutArea::refuse &&
+                !(0.5 * (b - a).cross(c - a).norm() > 1e-14))
                 throw LoadError(m_path,
                                 std::string("mesh ") + part.mesh->mName.C_Str() + ", triangle " +
                                     std::to_string(f),
@@ -184,6 +188,7 @@ class MeshBuilder {
 
     std::string m_path;
     std::map<std::string, FilePositions> m_file_positions;
+    FacesWithoutArea m_without_area;
     std::vector<Vec3> m_vertices;
     std::vector<Eigen::Vector3i> m_faces;
 };
@@ -194,7 +199,8 @@ bool same_geometry(const Placement& a, const Placement& b) {
 
 }  // namespace
 
-TriMesh load_mesh(const std::string& path, const std::string& mesh_name) {
+TriMesh load_mesh(const std::string& path, const std::string& mesh_name,
+                  FacesWithoutArea without_area) {
     Assimp::Importer importer;
     const aiScene& scene = read_scene(path, importer);
     std::vector<Placement> placements;
@@ -204,7 +210,7 @@ TriMesh load_mesh(const std::string& path, const std::string& mesh_name) {
                         scene.mNumMeshes == 0
                             ? "give a file with at least one face"
                             : "give one of the names in the file: " + mesh_names(scene));
-    MeshBuilder builder(path, read_file_positions(path));
+    MeshBuilder builder(path, read_file_positions(path), without_area);
     for (size_t first = 0; first < placements.size();) {
         size_t last = first + 1;
         while (last < placements.size() && same_geometry(placements[first], placements[last]))

@@ -6,6 +6,12 @@
 
 namespace cloth {
 
+/// What load_mesh() does with a face whose corners are in one line.
+enum class FacesWithoutArea {
+    refuse,  ///< LoadError
+    keep     ///< as the file has it, for who repairs the mesh: see repair_mesh()
+};
+
 /// Reads a triangle surface from OBJ, PLY, glTF or COLLADA (.dae, zipped .zae).
 ///
 ///     TriMesh skin = load_mesh("human.zae", "human-baseMesh");  // without the eyes
@@ -18,7 +24,8 @@ namespace cloth {
 /// @param mesh_name  the mesh or node to read; empty: all of them, one after the other
 /// @throws LoadError if the file is missing, truncated or empty, has no mesh of that name, or has a
 ///         vertex that is not finite, a face without area or an index that is out of range
-TriMesh load_mesh(const std::string& path, const std::string& mesh_name = "");
+TriMesh load_mesh(const std::string& path, const std::string& mesh_name = "",
+                  FacesWithoutArea without_area = FacesWithoutArea::refuse);
 
 /// Writes an OBJ that load_mesh() reads back bit by bit. The file appears whole or not at all: it
 /// is written under a temporary name and renamed.

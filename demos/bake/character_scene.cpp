@@ -6,7 +6,7 @@
 
 #include "data/body/garment_fit.h"
 #include "data/core/check_range.h"
-#include "data/files/mesh_io.h"
+#include "data/files/garment_assets.h"
 #include "demos/compare/body_scene.h"
 #include "demos/dressing_checks.h"
 
@@ -20,13 +20,25 @@ std::shared_ptr<const WeldedCharacter> character_of(const CharacterSceneSettings
     return skin;
 }
 
-Garment garment_of(const CharacterSceneSettings& settings) {
+/// At rest and as it is worn on the bind pose, which a waistband makes two shapes.
+struct WornGarment {
+    TriMesh rest;
+    Points worn;
+};
+
+WornGarment mesh_of(const CharacterSceneSettings& settings) {
     check_range("--garment-scale", settings.garment_scale, 1e-6, 1e6);
-    TriMesh mesh = load_mesh(settings.garment);
+    const ClothState start = load_garment_start(settings.garment);
+    TriMesh mesh = load_garment_mesh(settings.garment);
     mesh.vertices *= settings.garment_scale;
-    mesh = weld_mesh(mesh, settings.weld).mesh;
+    WeldedMesh welded = weld_mesh(mesh, settings.weld);
+    return {std::move(welded.mesh), settings.garment_scale * start.x(welded.kept, Eigen::all)};
+}
+
+Garment garment_of(const CharacterSceneSettings& settings) {
+    TriMesh mesh = mesh_of(settings).rest;
     const std::vector<int> pins = vertices_between(mesh.vertices, settings.pin);
-    return Garment("garment", mesh, fabric_named(settings.fabric), pins);
+    return Garment("garment", std::move(mesh), fabric_named(settings.fabric), pins);
 }
 
 }  // namespace
@@ -46,7 +58,8 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
     distance_to_skin(garment(), *m_skin);
     GarmentFitSettings fit;
     fit.clearance = settings.clearance;
-    m_start.x = fit_garment(garment().rest(), rest_skin(), m_skin->vertices(0.0), fit);
+    m_start.x = fit_garment({mesh_of(settings).worn, garment().rest().faces}, rest_skin(),
+                            m_skin->vertices(0.0), fit);
     m_band = std::make_unique<const SkinBinding>(TriMesh{m_skin->vertices(0.0), *m_skin->faces()},
                                                  m_start.x(garment().pins(), Eigen::all));
     const int available = m_skin->frame_count(frame_time()) - 1;

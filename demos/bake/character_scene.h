@@ -14,7 +14,7 @@ namespace cloth {
 struct CharacterSceneSettings {
     std::string character;  ///< its file
     CharacterSettings skin;
-    std::string garment;         ///< its mesh file
+    std::string garment;         ///< its mesh file; NAME.worn.obj beside NAME.obj is how it is worn
     double garment_scale = 1.0;  ///< metres per unit of the file, 1e-6 to 1e6
     double weld = 1e-4;          ///< vertices as near as this become one (m), 0 to 0.01
     double clearance = 4.5e-3;   ///< from skin to cloth at the start (m), 1e-3 to 0.05

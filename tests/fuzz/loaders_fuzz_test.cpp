@@ -16,6 +16,7 @@
 #include "data/body/smpl_model.h"
 #include "data/core/errors.h"
 #include "data/files/mesh_io.h"
+#include "data/files/mhclo.h"
 #include "data/files/npy_array.h"
 #include "data/files/point_cache_reader.h"
 #include "gnn/model/weights.h"
@@ -173,6 +174,23 @@ std::string check_shape_target(const std::string& path) {
     return target.offsets.allFinite() ? "" : "an offset is not finite";
 }
 
+std::string check_mhclo(const std::string& path) {
+    const MhcloFile clothes = load_mhclo(path);
+    if (clothes.rows.empty() || clothes.obj_file.empty()) return "nothing to put on";
+    for (const MhcloRow& row : clothes.rows)
+        if (!row.weights.allFinite() || !row.offset.allFinite()) return "a row is not finite";
+    const Points base = Points::Random(20, 3);
+    try {
+        const Points places = clothes.places(base);
+        if (places.rows() != static_cast<Eigen::Index>(clothes.rows.size())) return "rows are lost";
+        if (!places.allFinite()) return "a place is not finite";
+    } catch (const ArgumentError& error) {
+        const std::string message = error.what();  // of another base mesh
+        if (message.find("Remedy: ") == std::string::npos) return message;
+    }
+    return "";
+}
+
 std::string weights_file(const std::string& variant) {
     const int steps = variant == "fast" ? 1 : 3;
     ModelConfig config = ModelConfig::variant_named(variant, steps, /*levels=*/1);
@@ -322,6 +340,10 @@ TEST(LoadersFuzz, RigRecipe) {
 
 TEST(LoadersFuzz, GarmentRecipe) {
     fuzz_files({"json", garment_recipe_file(), check_garment_recipe});
+}
+
+TEST(LoadersFuzz, Mhclo) {
+    fuzz_files({"mhclo", mhclo_file(), check_mhclo});
 }
 
 TEST(LoadersFuzz, ShapeTarget) {

@@ -291,4 +291,11 @@ std::string shape_target_file() {
     return "# a target\n0 .001 -.02 0.5\n7 1e-3 0 0\n19 0 0.25 -1.5\n";
 }
 
+std::string mhclo_file() {
+    return "# clothes\n\nuuid 1-2\nbasemesh hm08\nname patch\nobj_file patch.obj\n"
+           "x_scale 5 11 1.5\ny_scale 7 8 2.25\nz_scale 9 5 1e0\nz_depth 50\nverts 0\n"
+           "0 1 2 0.5 0.25 .25 0.01 -0.02 0.03\n3 4 5 .2 0.3 0.5 0 0 -1.5e-2\n7\n"
+           "10 11 12 1.5 -0.25 -0.25 0 0 0\n19\n\ndelete_verts\n5 - 9 12\n";
+}
+
 }  // namespace cloth::test

@@ -19,5 +19,6 @@ std::string bvh_file();
 std::string garment_recipe_file();
 std::string rig_recipe_file();
 std::string shape_target_file();
+std::string mhclo_file();  ///< five rows of both kinds, scales, skin to delete
 
 }  // namespace cloth::test

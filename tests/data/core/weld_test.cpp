@@ -35,6 +35,14 @@ TEST(Weld, VerticesWithinTheToleranceBecomeTheFirstOfThem) {
     EXPECT_EQ(undirected_edges(welded.mesh.faces).size(), 5u);  // one is shared
 }
 
+TEST(Weld, VerticesBeyondAMillionKilometresAreRefused) {
+    TriMesh mesh = split_square(1e-4);
+    mesh.vertices(5, 2) = 1e9;
+    EXPECT_EQ(weld_mesh(mesh, 1e-300).merged, 0);
+    mesh.vertices(5, 2) = -1.1e9;
+    EXPECT_THROW(weld_mesh(mesh, 1e-4), ArgumentError);
+}
+
 TEST(Weld, VerticesFartherApartStay) {
     const WeldedMesh welded = weld_mesh(split_square(1e-4), 0.5e-4);
     EXPECT_EQ(welded.merged, 0);

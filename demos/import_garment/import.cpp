@@ -1,0 +1,76 @@
+#include "demos/import_garment/import.h"
+
+#include <filesystem>
+#include <set>
+
+#include "data/body/garment_fit.h"
+#include "data/files/mesh_io.h"
+#include "demos/import_garment/picture.h"
+#include "demos/import_garment/report.h"
+#include "demos/import_garment/wearer.h"
+#include "render/replaced_file.h"
+
+namespace cloth {
+namespace {
+
+/// The names of the files: with the sort of garment, if there are several.
+std::vector<std::string> file_names(const ImportOptions& options, const GarmentImport& import) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (const ImportedGarment& garment : import.garments) {
+        std::string name = options.name;
+        if (import.garments.size() > 1) name += "_" + garment.support.sort;
+        const std::string first = name;
+        for (int k = 2; !taken.insert(name).second; ++k) name = first + std::to_string(k);
+        names.push_back(options.out + "/" + name);
+    }
+    return names;
+}
+
+/// Garments are kept for the body default, from which fit_outfit() takes them to others.
+void carry_to_default(ImportedGarment& garment, const Body& from, double clearance) {
+    GarmentFitSettings settings;
+    settings.clearance = clearance;
+    const Points worn =
+        fit_garment(garment.worn, from.rest_mesh(), Body::load_default().rest(), settings);
+    garment.rest += worn - garment.worn.vertices;
+    garment.worn.vertices = worn;
+}
+
+}  // namespace
+
+ImportResult import_file(const ImportOptions& options) {
+    const Wearer wearer = load_wearer(options);
+    GarmentImport import =
+        import_garment(load_clothes(options, wearer), wearer.skin, options.import);
+    const Image picture = options.picture ? import_picture(import, wearer.skin) : Image();
+
+    std::filesystem::create_directories(options.out);
+    ImportResult result;
+    std::vector<WrittenGarment> written;
+    const std::vector<std::string> names = file_names(options, import);
+    for (size_t k = 0; k < names.size(); ++k) {
+        ImportedGarment& garment = import.garments[k];
+        if (wearer.body && options.body != "default")
+            carry_to_default(garment, *wearer.body, options.import.clearance);
+        written.push_back({names[k] + ".obj", ""});
+        save_obj(written[k].file, {garment.rest, garment.worn.faces});
+        const std::string worn = names[k] + ".worn.obj";
+        std::error_code none;
+        std::filesystem::remove(worn, none);  // of an earlier import
+        if (garment.support.kind == GarmentSupport::Kind::waistband) {
+            written[k].worn_file = worn;
+            save_obj(worn, garment.worn);
+        }
+        result.files.push_back(written[k].file);
+    }
+    result.json = import_json(options, import, written);
+    result.text = import_text(options, import, written, wearer.skin);
+    const std::string prefix = options.out + "/" + options.name + ".import";
+    write_text_file(prefix + ".json", result.json.dump(1) + "\n");
+    write_text_file(prefix + ".txt", result.text);
+    if (!picture.empty()) write_png(prefix + ".png", picture);
+    return result;
+}
+
+}  // namespace cloth

@@ -1,0 +1,167 @@
+#include "demos/import_garment/report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "demos/compare/json_numbers.h"
+
+namespace cloth {
+namespace {
+
+template <typename... Values>
+std::string line(const char* format, Values... values) {
+    char text[1200];
+    std::snprintf(text, sizeof text, format, values...);
+    return std::string(text) + "\n";
+}
+
+nlohmann::ordered_json garment_json(const ImportedGarment& garment, const WrittenGarment& written) {
+    const GarmentSupport& support = garment.support;
+    nlohmann::ordered_json row = {
+        {"file", written.file},
+        {"worn_file", written.worn_file.empty() ? nlohmann::ordered_json()
+                                                : nlohmann::ordered_json(written.worn_file)},
+        {"sort", support.sort},
+        {"held_by", name_of(support.kind)},
+        {"vertices", garment.worn.vertices.rows()},
+        {"vertices_before_remeshing", garment.vertices_before},
+        {"faces", garment.worn.faces.rows()},
+        {"mean_edge_mm", rounded_number(1e3 * garment.edge_length)},
+        {"smallest_angle_before_deg", rounded_number(garment.angle_before)},
+        {"smallest_angle_deg", rounded_number(garment.angle)},
+        {"part_inside_before", rounded_number(garment.inside_before)},
+        {"deepest_before_mm", rounded_number(1e3 * garment.deepest_before)},
+        {"part_inside", rounded_number(garment.inside)},
+        {"clearance_mm", rounded_number(1e3 * garment.clearance)},
+        {"strain_1_percent", rounded_number(garment.strain_low)},
+        {"strain_99_percent", rounded_number(garment.strain_high)},
+        {"pins", nullptr},
+        {"waistband_vertices", support.upper_edge}};
+    if (support.kind != GarmentSupport::Kind::shoulders)
+        row["pins"] = {{"low_m", rounded_number(support.pin_low)},
+                       {"high_m", rounded_number(support.pin_high)}};
+    return row;
+}
+
+std::string holding_text(const GarmentSupport& support) {
+    if (support.kind == GarmentSupport::Kind::shoulders) return "it hangs from the shoulders";
+    char pins[64];
+    std::snprintf(pins, sizeof pins, "--pin %.3f %.3f", support.pin_low, support.pin_high);
+    if (support.kind == GarmentSupport::Kind::waistband)
+        return "a waistband along its upper edge; or, on a --character, " + std::string(pins);
+    return "nothing: pin it by " + std::string(pins);
+}
+
+std::string garment_text(const ImportedGarment& garment, const WrittenGarment& written) {
+    return line("%s", written.file.c_str()) +
+           line("  is           %s", garment.support.sort.c_str()) +
+           line("  held by      %s", holding_text(garment.support).c_str()) +
+           line("  vertices     %d, before %d; mean edge %.1f mm",
+                static_cast<int>(garment.worn.vertices.rows()), garment.vertices_before,
+                1e3 * garment.edge_length) +
+           line("  angles       smallest %.1f degrees, before %.1f", garment.angle,
+                garment.angle_before) +
+           line("  inside       %.1f %% of the vertices, before %.1f %%, up to %.1f mm deep",
+                1e2 * garment.inside, 1e2 * garment.inside_before, 1e3 * garment.deepest_before) +
+           line("  clearance    %.2f mm; lengths changed by %+.1f to %+.1f %%",
+                1e3 * garment.clearance, 1e2 * garment.strain_low, 1e2 * garment.strain_high);
+}
+
+/// The garments' numbers from the outermost inwards, where they overlap.
+std::vector<size_t> outermost_first(const GarmentImport& import, const TriMesh& skin) {
+    const SurfaceDistance distance(skin);
+    std::vector<size_t> order(import.garments.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    // Few garments: each goes before the first one that it lies over.
+    for (size_t k = 1; k < order.size(); ++k)
+        for (size_t i = k; i > 0; --i) {
+            const auto& upper = import.garments[order[i]].worn;
+            const auto& lower = import.garments[order[i - 1]].worn;
+            if (height_over(upper, lower, distance) <= 0.0) break;
+            std::swap(order[i], order[i - 1]);
+        }
+    return order;
+}
+
+std::string joined(const std::vector<std::string>& lines, const std::string& head) {
+    std::string all;
+    for (const std::string& text : lines) all += head + text + "\n";
+    return all;
+}
+
+std::string next_text(const ImportOptions& options, const GarmentImport& import,
+                      const std::vector<WrittenGarment>& written, const TriMesh& skin) {
+    std::string text = "next\n";
+    if (options.character.empty()) {
+        std::string outfit;
+        for (const size_t k : outermost_first(import, skin))
+            outfit += (outfit.empty() ? "" : "+") + written[k].file;
+        text += "  compare --garment " + outfit + " --body " + options.body + "\n";
+        return text + "  bake --garment " + outfit + " --out out/cloth.pc2 --body out/body.pc2\n";
+    }
+    for (size_t k = 0; k < written.size(); ++k) {
+        const GarmentSupport& support = import.garments[k].support;
+        text += "  bake --character " + options.character +
+                (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
+        char number[64];
+        if (options.skin.scale != 1.0) {
+            std::snprintf(number, sizeof number, " --character-scale %.9g", options.skin.scale);
+            text += number;
+        }
+        text += " --garment " + written[k].file;
+        if (import.clearance < options.import.clearance) {
+            std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
+            text += number;
+        }
+        if (support.kind == GarmentSupport::Kind::pins) {
+            std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low,
+                          support.pin_high);
+            text += number;
+        }
+        text += " --out out/cloth.pc2 --body out/body.pc2\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+nlohmann::ordered_json import_json(const ImportOptions& options, const GarmentImport& import,
+                                   const std::vector<WrittenGarment>& written) {
+    nlohmann::ordered_json garments = nlohmann::ordered_json::array();
+    for (size_t k = 0; k < written.size(); ++k)
+        garments.push_back(garment_json(import.garments[k], written[k]));
+    const Eigen::RowVector3d low = import.read.vertices.colwise().minCoeff(),
+                             high = import.read.vertices.colwise().maxCoeff();
+    return {{"file", options.file},
+            {"character", options.character.empty() ? nlohmann::ordered_json()
+                                                    : nlohmann::ordered_json(options.character)},
+            {"body", options.character.empty() ? nlohmann::ordered_json(options.body)
+                                               : nlohmann::ordered_json()},
+            {"metres_per_unit", options.scale},
+            {"read",
+             {{"vertices", import.read.vertices.rows()},
+              {"faces", import.read.faces.rows()},
+              {"low_m", {low.x(), low.y(), low.z()}},
+              {"high_m", {high.x(), high.y(), high.z()}}}},
+            {"changes", import.changes},
+            {"warnings", import.warnings},
+            {"garments", garments}};
+}
+
+std::string import_text(const ImportOptions& options, const GarmentImport& import,
+                        const std::vector<WrittenGarment>& written, const TriMesh& skin) {
+    const Eigen::RowVector3d size =
+        import.read.vertices.colwise().maxCoeff() - import.read.vertices.colwise().minCoeff();
+    std::string text = line("%s: %d vertices, %d faces, %.2f x %.2f x %.2f m (1 unit = %.6g m)",
+                            options.file.c_str(), static_cast<int>(import.read.vertices.rows()),
+                            static_cast<int>(import.read.faces.rows()), size.x(), size.y(),
+                            size.z(), options.scale);
+    text += joined(import.changes, "changed: ");
+    text += joined(import.warnings, "warning: ");
+    for (size_t k = 0; k < written.size(); ++k)
+        text += garment_text(import.garments[k], written[k]);
+    return text + next_text(options, import, written, skin);
+}
+
+}  // namespace cloth

@@ -1,0 +1,186 @@
+#include <filesystem>
+#include <fstream>
+
+#include "data/body/body_shapes.h"
+#include "data/body/outfit.h"
+#include "demos/bake/character_scene.h"
+#include "demos/compare/arguments.h"
+#include "demos/import_garment/import.h"
+#include "tests/data/authoring/broken_garments.h"
+#include "tests/data/files/file_fixture.h"
+
+namespace cloth::import_file_test {
+
+using namespace cloth::test;
+
+namespace {
+
+class ImportFile : public FileTest {
+ protected:
+    /// The file that holds a mesh, and options for it.
+    ImportOptions options_for(const TriMesh& mesh, const std::string& name = "thing.obj") const {
+        save_obj(path(name), mesh);
+        return options_for(name);
+    }
+    ImportOptions options_for(const std::string& name,
+                              const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{path(name), "--out", path("out"), "--no-picture"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return parse_import_options(arguments);
+    }
+    std::string refusal(const ImportOptions& options) const {
+        try {
+            import_file(options);
+        } catch (const std::exception& error) {
+            EXPECT_FALSE(std::filesystem::exists(path("out"))) << "something was written";
+            return error.what();
+        }
+        return "no error";
+    }
+};
+
+}  // namespace
+
+TEST_F(ImportFile, WhatIsWrittenIsAGarmentOfTheProject) {
+    ImportOptions options = options_for(worn_garment("skirt_1000"));
+    options.picture = true;
+    const ImportResult result = import_file(options);
+    ASSERT_EQ(result.files.size(), 1u);
+    const Outfit outfit = load_outfit(result.files[0]);
+    EXPECT_EQ(outfit.garment.vertex_count(), 1002);
+    EXPECT_GT((outfit.start.x - outfit.garment.rest().vertices).norm(), 0.01) << "a waistband";
+    for (const char* file :
+         {"thing.obj", "thing.worn.obj", "thing.import.json", "thing.import.txt"})
+        EXPECT_TRUE(std::filesystem::exists(path("out/") + file)) << file;
+    EXPECT_GT(std::filesystem::file_size(path("out/thing.import.png")), 10000u);
+    const auto& garment = result.json.at("garments").at(0);
+    EXPECT_EQ(garment.at("sort"), "skirt");
+    EXPECT_EQ(garment.at("held_by"), "waistband");
+    EXPECT_EQ(garment.at("vertices"), 1002);
+    EXPECT_EQ(garment.at("part_inside"), 0.0);
+    EXPECT_GT(garment.at("pins").at("high_m"), garment.at("pins").at("low_m"));
+    std::ifstream file(path("out/thing.import.json"));
+    EXPECT_EQ(nlohmann::ordered_json::parse(file), result.json);
+    EXPECT_NE(result.text.find("compare --garment " + result.files[0]), std::string::npos);
+}
+
+TEST_F(ImportFile, PiecesAreFilesAndAnOutfitFromTheOutside) {
+    const ImportResult result =
+        import_file(options_for(together(worn_garment("pants_1000"), worn_garment("shirt_1000"))));
+    ASSERT_EQ(result.files.size(), 2u);
+    const std::string outfit = path("out/thing_top.obj") + "+" + path("out/thing_trousers.obj");
+    EXPECT_NE(result.text.find(outfit), std::string::npos) << result.text;
+    EXPECT_EQ(load_outfit(outfit).part_count(), 2);
+}
+
+TEST_F(ImportFile, WrongScalesAxesAndPlacesAreSaidWithTheOptionThatMendsThem) {
+    const TriMesh shirt = worn_garment("tshirt_1000");
+    TriMesh z_up = shirt;
+    z_up.vertices.col(1) = -100.0 * shirt.vertices.col(2);
+    z_up.vertices.col(2) = 100.0 * shirt.vertices.col(1);
+    z_up.vertices.col(0) *= 100.0;
+    TriMesh away = shirt;
+    away.vertices.col(1).array() += 5.0;
+    struct Case {
+        TriMesh mesh;
+        std::string remedy;
+        std::vector<std::string> mends;
+    };
+    for (const Case& test :
+         std::vector<Case>{{scaled(shirt, 100.0), "--unit cm", {"--unit", "cm"}},
+                           {scaled(shirt, 1000.0), "--unit mm", {"--unit", "mm"}},
+                           {scaled(shirt, 10.0), "--unit dm", {"--unit", "dm"}},
+                           {z_up, "--unit cm --up z", {"--unit", "cm", "--up", "z"}},
+                           {away, "--move", {"--move", "0", "-5", "0"}}}) {
+        const std::string message = refusal(options_for(test.mesh));
+        EXPECT_NE(message.find("it is not where the character is"), std::string::npos) << message;
+        EXPECT_NE(message.find(test.remedy), std::string::npos) << message;
+        const ImportResult result = import_file(options_for("thing.obj", test.mends));
+        EXPECT_LT((load_garment_mesh(result.files[0]).vertices - shirt.vertices).norm(), 0.01);
+        std::filesystem::remove_all(path("out"));
+    }
+}
+
+TEST_F(ImportFile, BrokenFilesAreRefusedWithARemedy) {
+    const TriMesh shirt = worn_garment("tshirt_1000");
+    TriMesh strip = moebius(60);
+    strip.vertices.col(1).array() += 1.1;
+    write("empty.obj", "");
+    write("points.obj", "v 0 1 0\nv 0 1 1\nv 0 2 0\n");
+    write("nan.obj", "v 0 1 0\nv nan 1 1\nv 0 2 0\nf 1 2 3\n");
+    write("line.obj", "v 0 0.2 0\nv 0 1 0\nv 0 1.5 0\nf 1 2 3\n");
+    write("text.mhclo", "verts 0\n1 2\n");
+    save_obj(path("strip.obj"), strip);
+    for (const auto& [file, part] :
+         std::vector<std::pair<std::string, std::string>>{{"none.obj", "no such file"},
+                                                          {"empty.obj", "empty.obj"},
+                                                          {"points.obj", "points.obj"},
+                                                          {"nan.obj", "not finite"},
+                                                          {"line.obj", "no face with an area"},
+                                                          {"text.mhclo", "line 2"},
+                                                          {"strip.obj", "one side only"}}) {
+        const std::string message = refusal(options_for(file));
+        EXPECT_NE(message.find(part), std::string::npos) << message << "\nlacks: " << part;
+        EXPECT_NE(message.find("Remedy: "), std::string::npos) << message;
+    }
+}
+
+TEST_F(ImportFile, ItsOwnInputIsNotOverwritten) {
+    save_obj(path("thing.obj"), worn_garment("tshirt_1000"));
+    EXPECT_THROW(parse_import_options({path("thing.obj"), "--out", path("")}), UsageError);
+}
+
+TEST_F(ImportFile, AWornShapeOfAnEarlierImportIsRemoved) {
+    import_file(options_for(worn_garment("skirt_1000")));
+    EXPECT_TRUE(std::filesystem::exists(path("out/thing.worn.obj")));
+    import_file(options_for(worn_garment("tshirt_1000")));
+    EXPECT_FALSE(std::filesystem::exists(path("out/thing.worn.obj")));
+}
+
+TEST_F(ImportFile, WhatWasModelledOnAnotherBodyIsCarriedToTheDefaultOne) {
+    const auto shapes = BodyShapes::load_shared();
+    if (!shapes) GTEST_SKIP() << "no shared data";
+    const Body standard = Body::load_default();
+    BodyShape heavy;  // as body_named() has it
+    heavy.female = 0.0;
+    heavy.weight = 0.75;
+    heavy.waist = 0.3;
+    const Outfit worn =
+        fit_outfit(load_outfit("tshirt_1000"), standard, standard.with_rest(shapes->skin(heavy)));
+    save_obj(path("thing.obj"), {worn.start.x, worn.garment.rest().faces});
+    const ImportResult result = import_file(options_for("thing.obj", {"--body", "heavy"}));
+    const Points back = load_garment_mesh(result.files[0]).vertices;
+    EXPECT_LT((back - worn_garment("tshirt_1000").vertices).rowwise().norm().mean(), 0.015);
+}
+
+TEST_F(ImportFile, ACharacterWearsWhatWasImportedForIt) {
+    const std::string person = model_path("X/BCN_Epileptic.X");
+    save_obj(path("skirt.obj"), worn_garment("skirt_1000"));
+    const ImportResult result = import_file(
+        options_for("skirt.obj", {"--character", person, "--move", "-0.02", "-1.02", "-0.17"}));
+    EXPECT_EQ(result.json.at("character"), person);
+    EXPECT_NE(result.text.find("bake --character " + person), std::string::npos);
+    EXPECT_NE(result.text.find("--clearance 0.003"), std::string::npos) << result.text;
+    CharacterSceneSettings settings;
+    settings.character = person;
+    settings.garment = result.files[0];
+    settings.clearance = 0.003;
+    settings.steps = 2;
+    const CharacterScene scene(settings);
+    const Points rest = scene.garment().rest().vertices;
+    EXPECT_GT((scene.start().x - rest).norm(), 0.01) << "worn is longer than the band at rest";
+    EXPECT_GE(smallest_clearance(
+                  {scene.start().x, scene.garment().rest().faces},
+                  SurfaceDistance({scene.skin(0.0), *scene.boundary(0, 0.01).obstacles[0].faces})),
+              0.0029);
+}
+
+TEST_F(ImportFile, AFileOfMakeHumanNeedsItsBody) {
+    write("patch.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+    write("patch.mhclo", "obj_file patch.obj\nverts 0\n1\n2\n3\n");
+    const ImportOptions options =
+        options_for("patch.mhclo", {"--character", model_path("X/BCN_Epileptic.X")});
+    EXPECT_NE(refusal(options).find("it fits MakeHuman's body"), std::string::npos);
+}
+
+}  // namespace cloth::import_file_test
