@@ -25,7 +25,7 @@ namespace {
 constexpr double fine_edge = 0.03;     // longer ones cannot follow a limb (m)
 constexpr double sharp_angle = 8.0;    // solvers dislike sharper ones (degrees)
 constexpr double strong_strain = 0.3;  // of the fit
-constexpr double farthest = 0.3;       // from the skin: nothing is worn there (m)
+constexpr double too_far = 0.3;        // from the skin: nothing is worn there (m)
 constexpr double torn = 1.0;           // beyond: it went through a limb
 constexpr double overlap = 0.04;       // garments as near as this lie over each other (m)
 
@@ -220,7 +220,7 @@ class Importer {
 
     void check_distance(const TriMesh& piece) const {
         const double away = smallest_clearance(piece, m_skin);
-        if (away > farthest)
+        if (away > too_far)
             throw ArgumentError("garment",
                                 text("a piece of %d vertices is %.2f m from the skin",
                                      static_cast<int>(piece.vertices.rows()), away),

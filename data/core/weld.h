@@ -19,7 +19,8 @@ struct WeldedMesh {
 /// stays where it is; vertices that no face uses are left out.
 ///
 /// @param tolerance  (m), 0 to 0.01; 0 joins vertices at exactly the same place
-/// @throws ArgumentError if the tolerance is out of range, a vertex is not finite or beyond 1e9 m, or
+/// @throws ArgumentError if the tolerance is out of range, a vertex is not finite or beyond 1e9 m,
+/// or
 ///         a face refers to a vertex that does not exist
 WeldedMesh weld_mesh(const TriMesh& mesh, double tolerance);
 
