@@ -51,6 +51,8 @@ void finish_scene(SceneOptions& options) {
         return check_garment_name(options.garment);
     }
     CharacterSceneSettings& character = options.character;
+    if (!character.pin.empty() && character.pin.size() != 2)
+        throw UsageError("--pin: give the lowest and the highest height");
     character.garment = options.garment;
     character.skin.animation = options.motion;
     character.fabric = options.fabric;
