@@ -76,8 +76,8 @@ class SkinGoalsContract : public StepperContract {
         Proximity().signed_distance(x, boundary, StepEnd::end, distance);
         return -distance.minCoeff();
     }
-    /// How deep a vertex may be in the end (m): layers have the last word, and what they press in by
-    /// less than a tenth of a millimetre is left to the next step.
+    /// How deep a vertex may be in the end (m): layers have the last word, and what they press in
+    /// by less than a tenth of a millimetre is left to the next step.
     static double depth() { return GetParam().name == "QuasiNewtonLayered" ? 1e-4 : exact; }
     static double kinetic(const Garment& garment, const ClothState& state) {
         return 0.5 * garment.masses().dot(state.v.rowwise().squaredNorm());
