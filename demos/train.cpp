@@ -4,34 +4,19 @@
 //     train --variant baseline --recipe paper --width 128 --steps 21 --device cuda
 //           --iterations 110000 --out out/baseline
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <cerrno>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <optional>
 #include <string>
 
 #include "data/core/check_range.h"
-#include "data/core/errors.h"
 #include "data/files/garment_assets.h"
+#include "demos/training_program.h"
 #include "gnn/train/trainer.h"
 
 namespace {
-
-std::atomic<bool> g_stop{false};
-
-/// The first asks for a checkpoint and an end, the second ends the program at once.
-void on_signal(int signal) {
-    g_stop = true;
-    std::signal(signal, SIG_DFL);
-}
 
 struct Options {
     cloth::TrainerSettings settings;
@@ -187,34 +172,14 @@ cloth::TrainerSettings make_settings(const Options& options) {
     return settings;
 }
 
-void lower_priority(int nice_value) {
-    cloth::check_range("--nice", nice_value, 0, 19);
-    if (nice_value > 0 && setpriority(PRIO_PROCESS, 0, nice_value) != 0)
-        std::cerr << "train: the priority stays as it is: " << std::strerror(errno) << "\n";
-}
-
-/// A training of days must not be lost because an option was forgotten.
-void refuse_to_overwrite(const std::string& folder) {
-    if (std::filesystem::exists(folder + "/checkpoint.pt"))
-        throw cloth::ArgumentError(folder, "has a training already",
-                                   "give --resume to go on with it, or another --out");
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
     try {
         const Options options = parse(count, arguments);
-        if (!options.resume) refuse_to_overwrite(options.settings.out);
-        lower_priority(options.nice);
-        cloth::Trainer trainer(make_settings(options));
-        if (options.resume && !trainer.resume())
-            std::cerr << "train: no checkpoint in " << options.settings.out << ", starting anew\n";
-        std::signal(SIGINT, on_signal);
-        std::signal(SIGTERM, on_signal);
-        trainer.run(g_stop);
-        if (g_stop) std::cerr << "train: stopped; --resume goes on\n";
-        std::cerr << "train: weights in " << options.settings.out << "/weights.safetensors\n";
+        const cloth::TrainingProgram program{"train", options.settings.out, options.nice,
+                                             options.resume};
+        cloth::run_training(program, [&] { return cloth::Trainer(make_settings(options)); });
     } catch (const std::exception& error) {
         std::cerr << "train: " << error.what() << "\n";
         return 1;

@@ -3,31 +3,15 @@
 //
 //     train_skinning --garment tshirt_1000 --minutes 40 --out out/skinning
 
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
-#include <atomic>
-#include <cerrno>
-#include <csignal>
 #include <cstdlib>
-#include <cstring>
-#include <filesystem>
 #include <iostream>
 #include <string>
 
-#include "data/core/check_range.h"
-#include "data/core/errors.h"
+#include "demos/training_program.h"
 #include "gnn/train/skinning_trainer.h"
 
 namespace {
-
-std::atomic<bool> g_stop{false};
-
-/// The first asks for an end, the second ends the program at once.
-void on_signal(int signal) {
-    g_stop = true;
-    std::signal(signal, SIG_DFL);
-}
 
 struct Options {
     cloth::SkinningTrainerSettings settings;
@@ -85,31 +69,14 @@ Options parse(int count, char** arguments) {
     return options;
 }
 
-void lower_priority(int nice_value) {
-    cloth::check_range("--nice", nice_value, 0, 19);
-    if (nice_value > 0 && setpriority(PRIO_PROCESS, 0, nice_value) != 0)
-        std::cerr << "train_skinning: the priority stays as it is: " << std::strerror(errno)
-                  << "\n";
-}
-
 }  // namespace
 
 int main(int count, char** arguments) {
     try {
         const Options options = parse(count, arguments);
-        const std::string& out = options.settings.out;
-        if (!options.resume && std::filesystem::exists(out + "/checkpoint.pt"))
-            throw cloth::ArgumentError(out, "has a training already",
-                                       "give --resume to go on with it, or another --out");
-        lower_priority(options.nice);
-        cloth::SkinningTrainer trainer(options.settings);
-        if (options.resume && !trainer.resume())
-            std::cerr << "train_skinning: no checkpoint in " << out << ", starting anew\n";
-        std::signal(SIGINT, on_signal);
-        std::signal(SIGTERM, on_signal);
-        trainer.run(g_stop);
-        if (g_stop) std::cerr << "train_skinning: stopped; --resume goes on\n";
-        std::cerr << "train_skinning: weights in " << out << "/weights.safetensors\n";
+        const cloth::TrainingProgram program{"train_skinning", options.settings.out, options.nice,
+                                             options.resume};
+        cloth::run_training(program, [&] { return cloth::SkinningTrainer(options.settings); });
     } catch (const std::exception& error) {
         std::cerr << "train_skinning: " << error.what() << "\n";
         return 1;

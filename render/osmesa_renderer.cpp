@@ -15,6 +15,7 @@
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "render/drawable.h"
+#include "render/scene_uniforms.h"
 #include "render/shaders.h"
 #include "render/text.h"
 
@@ -253,21 +254,8 @@ void OsmesaRenderer::Implementation::set_common(const Program& program, const Sc
                                                 const Camera& camera,
                                                 const ShadowView& shadow) const {
     const double aspect = static_cast<double>(m_settings.width) / m_settings.height;
-    const Lights& lights = scene.lights;
     program.use();
-    program.set("view", Mat4f(view_matrix(camera).cast<float>()));
-    program.set("projection", Mat4f(projection_matrix(camera, aspect).cast<float>()));
-    program.set("world_to_shadow", Mat4f(clip_to_texture() * shadow.projection * shadow.view));
-    program.set("shadow_texel", shadow.texel);
-    program.set("shadow_step", 1.0 / m_settings.shadow_size);
-    program.set("shadow_strength", lights.shadows ? 1.0 : 0.0);
-    program.set("eye", camera.eye);
-    program.set("key", Vec3(lights.key.normalized()));
-    program.set("fill", Vec3(lights.fill.normalized()));
-    program.set("key_strength", lights.key_strength);
-    program.set("fill_strength", lights.fill_strength);
-    program.set("ambient_sky", lights.ambient_sky);
-    program.set("ambient_ground", lights.ambient_ground);
+    set_scene_uniforms(program, camera, aspect, scene.lights, shadow, m_settings.shadow_size);
 }
 
 void OsmesaRenderer::Implementation::draw_scene(const Scene& scene, const Camera& camera,

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "demos/viewer/gl_objects.h"
-#include "render/drawable.h"
+#include "render/scene_uniforms.h"
 #include "render/shaders.h"
 
 namespace cloth {
@@ -98,21 +98,8 @@ void Drawer::Implementation::draw_shadow_map() const {
 
 void Drawer::Implementation::set_common(const GlProgram& program, const Camera& camera,
                                         double aspect) const {
-    const Lights& lights = scene.lights;
     program.use();
-    program.set("view", Mat4f(view_matrix(camera).cast<float>()));
-    program.set("projection", Mat4f(projection_matrix(camera, aspect).cast<float>()));
-    program.set("world_to_shadow", Mat4f(clip_to_texture() * shadow.projection * shadow.view));
-    program.set("shadow_texel", shadow.texel);
-    program.set("shadow_step", 1.0 / shadow_map.size());
-    program.set("shadow_strength", lights.shadows ? 1.0 : 0.0);
-    program.set("eye", camera.eye);
-    program.set("key", Vec3(lights.key.normalized()));
-    program.set("fill", Vec3(lights.fill.normalized()));
-    program.set("key_strength", lights.key_strength);
-    program.set("fill_strength", lights.fill_strength);
-    program.set("ambient_sky", lights.ambient_sky);
-    program.set("ambient_ground", lights.ambient_ground);
+    set_scene_uniforms(program, camera, aspect, scene.lights, shadow, shadow_map.size());
     program.set("depth_offset", 0.0f);
 }
 

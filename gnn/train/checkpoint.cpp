@@ -1,8 +1,8 @@
 #include <cstdio>
-#include <filesystem>
 #include <sstream>
 
 #include "data/core/errors.h"
+#include "gnn/train/checkpoint_file.h"
 #include "gnn/train/trainer.h"
 
 namespace cloth {
@@ -74,34 +74,20 @@ void Trainer::save() {
         archive.write(key + ".x", to_tensor(scene.state.x));
         archive.write(key + ".v", to_tensor(scene.state.v));
     }
-    const std::string file = m_settings.out + "/checkpoint.pt", temporary = file + ".tmp";
-    archive.save_to(temporary);
-    std::filesystem::rename(temporary, file);
+    save_checkpoint(archive, m_settings.out);
     weights().save(m_settings.out + "/weights.safetensors");
 }
 
 bool Trainer::resume() {
-    const std::string file = m_settings.out + "/checkpoint.pt";
-    if (!std::filesystem::exists(file)) return false;
-    try {
-        load(file);
-    } catch (const c10::Error& error) {
-        throw LoadError(file, "", error.what_without_backtrace(),
-                        "delete the file to start training again");
-    }
-    return true;
+    return load_checkpoint(
+        m_settings.out, m_device,
+        [&](InputArchive& archive, const std::string& file) { load(archive, file); });
 }
 
-void Trainer::load(const std::string& file) {
-    InputArchive archive;
-    archive.load_from(file, m_device);
-    c10::IValue settings, random;
-    archive.read("settings", settings);
+void Trainer::load(InputArchive& archive, const std::string& file) {
+    check_checkpoint_settings(archive, file, describe(m_settings));
+    c10::IValue random;
     archive.read("random", random);
-    if (settings.toStringRef() != describe(m_settings))
-        throw LoadError(file, "settings",
-                        "the checkpoint is of another training: " + settings.toStringRef(),
-                        "resume with the settings it was started with: " + describe(m_settings));
     std::istringstream(random.toStringRef()) >> m_random.engine();
     m_iteration = read(archive, "iteration").item<std::int64_t>();
     m_seconds = read(archive, "seconds").item<double>();

@@ -11,6 +11,7 @@
 #include "data/core/errors.h"
 #include "data/files/garment_assets.h"
 #include "gnn/skinning/skinning_network.h"
+#include "gnn/train/checkpoint_file.h"
 #include "gnn/train/metrics_file.h"
 #include "gnn/train/training_worlds.h"
 
@@ -332,35 +333,19 @@ void SkinningTrainer::save() {
     archive.write("seconds", torch::tensor(m_seconds, torch::kFloat64));
     archive.write("parameters", m_parameters.flat().detach());
     m_adam.save(archive);
-    const std::string file = m_settings.out + "/checkpoint.pt", temporary = file + ".tmp";
-    archive.save_to(temporary);
-    std::filesystem::rename(temporary, file);
+    save_checkpoint(archive, m_settings.out);
     weights().save(m_settings.out + "/weights.safetensors");
 }
 
 bool SkinningTrainer::resume() {
-    const std::string file = m_settings.out + "/checkpoint.pt";
-    if (!std::filesystem::exists(file)) return false;
-    try {
-        load(file);
-    } catch (const c10::Error& error) {
-        throw LoadError(file, "", error.what_without_backtrace(),
-                        "delete the file to start training again");
-    }
-    return true;
+    return load_checkpoint(m_settings.out, torch::kCPU,
+                           [&](auto& archive, const std::string& file) { load(archive, file); });
 }
 
-void SkinningTrainer::load(const std::string& file) {
-    torch::serialize::InputArchive archive;
-    archive.load_from(file, torch::kCPU);
-    c10::IValue settings, random;
-    archive.read("settings", settings);
+void SkinningTrainer::load(torch::serialize::InputArchive& archive, const std::string& file) {
+    check_checkpoint_settings(archive, file, describe(m_settings, m_weights.config));
+    c10::IValue random;
     archive.read("random", random);
-    const std::string own = describe(m_settings, m_weights.config);
-    if (settings.toStringRef() != own)
-        throw LoadError(file, "settings",
-                        "the checkpoint is of another training: " + settings.toStringRef(),
-                        "resume with the settings it was started with: " + own);
     std::istringstream(random.toStringRef()) >> m_random.engine();
     Tensor iteration, seconds, parameters;
     archive.read("iteration", iteration);

@@ -86,7 +86,7 @@ class SkinningTrainer {
     double progress() const;
     bool is_done() const;
     void write_row(const SkinningValidation* validation);
-    void load(const std::string& file);
+    void load(torch::serialize::InputArchive& archive, const std::string& file);
 
     SkinningTrainerSettings m_settings;
     std::shared_ptr<const Body> m_body;

@@ -97,7 +97,7 @@ class Trainer {
     Validated validate();
     void write_row(const Validated& validated);
     void say(const Validated& validated) const;
-    void load(const std::string& file);
+    void load(torch::serialize::InputArchive& archive, const std::string& file);
 
     TrainerSettings m_settings;
     torch::Device m_device;

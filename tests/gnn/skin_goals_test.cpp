@@ -76,9 +76,6 @@ class SkinGoalsContract : public StepperContract {
         Proximity().signed_distance(x, boundary, StepEnd::end, distance);
         return -distance.minCoeff();
     }
-    /// How deep a vertex may be in the end (m): layers have the last word, and what they press in
-    /// by less than a tenth of a millimetre is left to the next step.
-    static double depth() { return GetParam().name == "QuasiNewtonLayered" ? 1e-4 : exact; }
     static double kinetic(const Garment& garment, const ClothState& state) {
         return 0.5 * garment.masses().dot(state.v.rowwise().squaredNorm());
     }
@@ -208,7 +205,7 @@ TEST_P(SkinGoalsContract, GoalsOutsideOfABodyAndTheBodyAreBothObeyed) {
             const StepReport report = stepper->step(scene.boundary, dt(*stepper), scene.state);
             ASSERT_TRUE(report.finite);
             EXPECT_LE(excess(scene.garment, scene.boundary, scene.state.x), exact) << k;
-            EXPECT_LE(deepest(scene.boundary, scene.state.x), depth()) << k;
+            EXPECT_LE(deepest(scene.boundary, scene.state.x), exact) << k;
             EXPECT_EQ(report.vertices_beyond_goals, 0);
         }
     }
@@ -221,7 +218,7 @@ TEST_P(SkinGoalsContract, ABodyWinsOverGoalsWithinIt) {
         scene.advance(Vec3(0.01, 0.0, 0.0));
         const StepReport report = stepper->step(scene.boundary, dt(*stepper), scene.state);
         ASSERT_TRUE(report.finite);
-        EXPECT_LE(deepest(scene.boundary, scene.state.x), depth());
+        EXPECT_LE(deepest(scene.boundary, scene.state.x), exact);
         EXPECT_EQ(report.vertices_beyond_goals, scene.garment.vertex_count());
         EXPECT_NEAR(report.max_goal_excess, excess(scene.garment, scene.boundary, scene.state.x),
                     1e-12);

@@ -7,9 +7,8 @@
 namespace cloth {
 namespace {
 
-constexpr int passes = 3;  // layers, obstacles, layers, ...: layers have the last word
-constexpr double fair_depth =
-    1e-4;  // m: vertices less deep in an obstacle are left to the next step
+constexpr int passes = 3;             // layers, obstacles, layers, ...: layers have the last word
+constexpr double fair_depth = 1e-6;   // m: vertices less deep in an obstacle are at its surface
 constexpr int vertex_iterations = 3;  // of push_out_rows
 
 bool same(const Points& a, const Points& b) {

@@ -204,7 +204,7 @@ TEST(GarmentImport, RemeshesOnRequest) {
     const ImportedGarment garment = imported(worn_garment("skirt_1000"), settings).garments[0];
     EXPECT_NEAR(static_cast<double>(garment.worn.vertices.rows()), 2000.0, 60.0);
     EXPECT_EQ(garment.vertices_before, 1002);
-    // Folds are kept at the price of some sharp angles: 3 to 10 degrees, by the compiler's
+    // Folds are kept at the price of some sharp angles: 3 to 9 degrees, by the compiler's
     // rounding.
     EXPECT_GT(smallest_angle(garment.worn), 2.0);
     EXPECT_EQ(garment.support.sort, "skirt");

@@ -1,0 +1,38 @@
+#include "demos/training_program.h"
+
+#include <sys/resource.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+
+#include "data/core/check_range.h"
+#include "data/core/errors.h"
+
+namespace cloth {
+
+static std::atomic<bool> g_stop{false};
+
+static void on_signal(int signal) {
+    g_stop = true;
+    std::signal(signal, SIG_DFL);
+}
+
+void begin_training(const TrainingProgram& program) {
+    if (!program.resume && std::filesystem::exists(program.out + "/checkpoint.pt"))
+        throw ArgumentError(program.out, "has a training already",
+                            "give --resume to go on with it, or another --out");
+    check_range("--nice", program.nice, 0, 19);
+    if (program.nice > 0 && setpriority(PRIO_PROCESS, 0, program.nice) != 0)
+        std::cerr << program.name << ": the priority stays as it is: " << std::strerror(errno)
+                  << "\n";
+}
+
+const std::atomic<bool>& stop_on_signals() {
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+    return g_stop;
+}
+
+}  // namespace cloth

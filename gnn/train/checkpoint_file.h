@@ -1,0 +1,25 @@
+#pragma once
+
+#include <torch/serialize/archive.h>
+
+#include <functional>
+#include <string>
+
+namespace cloth {
+
+/// Replaces the checkpoint of a folder: written under a temporary name, then renamed.
+void save_checkpoint(torch::serialize::OutputArchive& archive, const std::string& folder);
+
+/// Reads the checkpoint of a folder with `load(archive, file)`.
+/// @return  false: there is none
+/// @throws LoadError if LibTorch cannot read it; what `load` throws
+bool load_checkpoint(
+    const std::string& folder, const c10::Device& device,
+    const std::function<void(torch::serialize::InputArchive&, const std::string&)>& load);
+
+/// @param own  the settings of this training, as the entry "settings" of its checkpoints has them
+/// @throws LoadError if the archive is of another training
+void check_checkpoint_settings(torch::serialize::InputArchive& archive, const std::string& file,
+                               const std::string& own);
+
+}  // namespace cloth
