@@ -91,9 +91,10 @@ class ElementBounds {
         const float ut = dot(first.half, to), vt = dot(second.half, to);
         const float room = relative * limit + m_rounding;  // of `to`
         const float scale = (1.0f + relative) * u * u * v * v - uv * uv;
-        return (dot(to, to) <= limit * limit) &
-               (std::abs(ut * v * v - uv * vt) <= scale + u * v * v * room) &
-               (std::abs(uv * ut - u * u * vt) <= scale + u * u * v * room);
+        const bool near = dot(to, to) <= limit * limit;
+        const bool beside_first = std::abs(ut * v * v - uv * vt) <= scale + u * v * v * room;
+        const bool beside_second = std::abs(uv * ut - u * u * vt) <= scale + u * u * v * room;
+        return near & beside_first & beside_second;  // no branch: none is likely
     }
 
     std::vector<Lanes> m_points;  ///< |V|: from the first vertex (m)

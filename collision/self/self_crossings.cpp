@@ -55,7 +55,7 @@ const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points&
     m_motion = x1 - x0;
     m_faces.find(x0, m_motion, touching, threads);
     m_bounds.update(m_elements, x0, m_motion);
-    std::atomic<bool> touching = false;
+    std::atomic<bool> passed_over = false;
     const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         const auto& [f, g] = faces[static_cast<size_t>(k)];
@@ -66,11 +66,11 @@ const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points&
             if (crosses(elements, x0, m_motion, pair))
                 out.push_back(pair);
             else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
-                touching.store(true, std::memory_order_relaxed);
+                passed_over.store(true, std::memory_order_relaxed);
         });
     };
     gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
-    m_passed_over_none = !touching;
+    m_passed_over_none = !passed_over;
     return m_found;
 }
 
