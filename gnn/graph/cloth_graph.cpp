@@ -171,13 +171,17 @@ SamplingSchedule make_schedule(const std::vector<int>& first_edge, int steps, in
     return schedule;
 }
 
+std::uint64_t new_graph_id() {
+    static std::atomic<std::uint64_t> next{1};
+    return next++;
+}
+
 ClothGraph build_cloth_graph(const Garment& garment, const GraphSettings& settings) {
     check_range("GraphSettings.steps", settings.steps, 1, 64);
     check_range("GraphSettings.sampled_edges", settings.sampled_edges, 0, 32);
     check_levels("GraphSettings", settings.steps, settings.pooling, settings.level_schedule);
-    static std::atomic<std::uint64_t> next_id{1};
     ClothGraph graph;
-    graph.id = next_id++;
+    graph.id = new_graph_id();
     graph.vertex_count = static_cast<int>(garment.vertex_count());
     const Adjacency mesh = mesh_adjacency(garment);
     std::vector<int> all(mesh.size());

@@ -56,6 +56,9 @@ struct ClothGraph {
 /// @throws ArgumentError if a setting is out of range
 ClothGraph build_cloth_graph(const Garment& garment, const GraphSettings& settings);
 
+/// One that no other graph of the process has.
+std::uint64_t new_graph_id();
+
 /// The schedule alone; the same for equal arguments on any machine.
 SamplingSchedule make_schedule(const std::vector<int>& first_edge, int steps, int fan_in,
                                std::uint64_t seed);

@@ -6,6 +6,7 @@
 
 #include "collision/proximity/proximity.h"
 #include "data/authoring/sheet.h"
+#include "gnn/graph/graph_batch.h"
 #include "gnn/physics/stepper/guess.h"
 #include "gnn/train/network.h"
 #include "gnn/train/torch_predictor.h"
@@ -93,6 +94,33 @@ TEST_P(EngineVariant, SameBitsForAnyThreadCountAndTwice) {
     const Points first = predict(one, scene);
     EXPECT_EQ(first, predict(one, scene));
     EXPECT_EQ(first, predict(three, scene));
+}
+
+TEST_P(EngineVariant, EvaluatesABatchOfGarmentsAsEachAlone) {
+    const ModelConfig config = small_config(GetParam());
+    const auto weights = random_weights(config);
+    const EngineScene touching(config, 300), free(config, 130, false), tiny(config, 9);
+    const std::vector<const EngineScene*> scenes = {&touching, &tiny, &free, &touching};
+    std::vector<const ClothGraph*> graphs;
+    std::vector<const Features*> features;
+    for (const EngineScene* scene : scenes) {
+        graphs.push_back(&scene->graph);
+        features.push_back(&scene->features);
+    }
+    const GraphBatch batch(graphs);
+    Features all;
+    batch.gather(features, all);
+    Engine engine(*weights);
+    const auto torch_predictor = make_torch_predictor(*weights);
+    for (Predictor* predictor : {static_cast<Predictor*>(&engine), torch_predictor.get()}) {
+        Points out;
+        predictor->predict(batch.graph(), all, out);
+        ASSERT_EQ(out.rows(), batch.graph().vertex_count);
+        for (size_t k = 0; k < scenes.size(); ++k) {
+            const Points expected = predict(*predictor, *scenes[k]);
+            EXPECT_LT((batch.rows_of(k, out) - expected).norm(), 1e-5 * expected.norm());
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, EngineVariant,
