@@ -49,6 +49,7 @@ struct Outcome {
 cloth::WeldedCharacter load_skin(const Options& options) {
     cloth::WeldedCharacter skin(options.character, options.skin, options.weld);
     cloth::check_height(options.character, skin);
+    cloth::check_surface(options.character, skin);
     std::printf("character  %s: %d vertices, %.2f m high, animation of %.2f s\n",
                 options.character.c_str(), static_cast<int>(skin.rest().vertices.rows()),
                 skin.height(), skin.duration());

@@ -18,6 +18,7 @@ std::shared_ptr<const WeldedCharacter> character_of(const CharacterSceneSettings
     auto skin =
         std::make_shared<const WeldedCharacter>(settings.character, settings.skin, settings.weld);
     check_height(settings.character, *skin);
+    check_surface(settings.character, *skin);
     return skin;
 }
 

@@ -90,6 +90,7 @@ Wearer load_wearer(const ImportOptions& options) {
     }
     const WeldedCharacter character(options.character, options.skin, options.character_weld);
     check_height(options.character, character);
+    check_surface(options.character, character);
     return {options.character, character.rest(), nullptr};
 }
 

@@ -147,6 +147,18 @@ PaintedMesh painted_cape() {
     return cape;
 }
 
+TEST_F(Bake, ACharacterThatIsNoSurfaceIsRefusedByItsFile) {
+    BakeOptions options = cape("xpbd-10");
+    options.character.character = model_path("X/Testwuson.X");
+    try {
+        make_bake_scene(options);
+        FAIL() << "it was taken";
+    } catch (const ArgumentError& error) {
+        EXPECT_NE(std::string(error.what()).find("Testwuson.X: edge"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(Bake, AGarmentThatFallsOffIsToldOnce) {
     BakeOptions options = cape("xpbd-10");
     options.character.pin.clear();
