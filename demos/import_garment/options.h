@@ -27,6 +27,8 @@ struct ImportOptions {
     std::string name;                         ///< of the garment; empty: the file's
     std::string out = "out/import";
     bool picture = true;
+    std::string
+        programs;  ///< what is put before the programs that are proposed: their folder and /
 };
 
 /// @throws UsageError naming the option; HelpText if it is asked for; ArgumentError for a unit or a
