@@ -29,9 +29,9 @@ class FadingSheet : public testing::Test {
         solver.attach(cloth, Fabric::soft_cotton());
         start = nodePositions(*cloth);
     }
-    Points skin(int frame) const {
+    Points skin(int at) const {
         Points x = start;
-        x.col(0).array() += 0.001 * frame;
+        x.col(0).array() += 0.001 * at;
         return x;
     }
     void step(int count) {

@@ -92,7 +92,9 @@ TEST(SkinBlend, NoVertexIsShownInsideAnObstacle) {
                           -1e-7)
                     << turn << ", weight " << 0.1 * k << ", vertex " << i;
         }
-        if (turn > 0.5) EXPECT_GT(deepest, 0.05) << "the scene is no test";
+        if (turn > 0.5) {
+            EXPECT_GT(deepest, 0.05) << "the scene is no test";
+        }
     }
 }
 

@@ -102,10 +102,11 @@ void expect_values(const VectorX& values, std::initializer_list<double> expected
     ASSERT_EQ(values.size(), static_cast<Eigen::Index>(expected.size()));
     for (Eigen::Index i = 0; i < values.size(); ++i) {
         const double e = *(expected.begin() + i);
-        if (std::isinf(e))
+        if (std::isinf(e)) {
             EXPECT_EQ(values[i], e) << i;
-        else
+        } else {
             EXPECT_NEAR(values[i], e, 1e-6) << i;
+        }
     }
 }
 
