@@ -41,10 +41,6 @@ std::vector<std::string> notes_of(const PaintedMesh& painted, const GoalLimits& 
     return notes;
 }
 
-Vec3 offset_of(const Points& garment, const Points& skin) {
-    return garment.colwise().mean() - skin.colwise().mean();
-}
-
 Garment garment_of(const CharacterSceneSettings& settings, const TriMesh& rest,
                    const GoalLimits& limits) {
     return Garment("garment", rest, fabric_named(settings.fabric),
@@ -92,11 +88,11 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
     fit.clearance = settings.clearance;
     const TriMesh worn_mesh{worn.worn, garment().rest().faces};
     m_start.x = fit_garment(worn_mesh, rest_skin(), m_skin->vertices(0.0), fit);
-    m_start_offset = offset_of(m_start.x, m_skin->vertices(0.0));
     // Fitted to the pose that it was modelled on, no goal is inside the skin there.
-    if (garment().has_goals())
-        m_skinning = std::make_unique<const GarmentSkinning>(
-            skin_garment(fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit), *m_skin));
+    const Points goals = garment().has_goals()
+                             ? fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit)
+                             : worn.worn;
+    m_skinning = std::make_unique<const GarmentSkinning>(skin_garment(goals, *m_skin));
     m_band = std::make_unique<const SkinBinding>(TriMesh{m_skin->vertices(0.0), *m_skin->faces()},
                                                  m_start.x(garment().pins(), Eigen::all));
     const int available = m_skin->frame_count(frame_time()) - 1;
@@ -112,7 +108,7 @@ Points CharacterScene::skin(double time) const {
 
 std::string CharacterScene::loss(const Boundary& boundary, const Points& x) const {
     constexpr double far = 0.3;  // m
-    const Vec3 moved = offset_of(x, boundary.obstacles[0].x1) - m_start_offset;
+    const Vec3 moved = x.colwise().mean() - boundary.goals.x1.colwise().mean();
     if (moved.norm() <= far) return "";
     return garment().pins().empty() && !garment().has_goals()
                ? "the garment slid off: give --pin LOW HIGH, the heights of what holds it"
@@ -123,8 +119,8 @@ Boundary CharacterScene::boundary(double t0, double t1) const {
     Boundary boundary;
     boundary.obstacles.push_back(m_skin->obstacle(std::max(0.0, t0), std::max(0.0, t1)));
     boundary.pin_targets = m_band->positions(boundary.obstacles[0].x1);
-    if (m_skinning)
-        boundary.goals = skinned_goals(*m_skinning, *m_skin, std::max(0.0, t0), std::max(0.0, t1));
+    // Garments without limits do not look at them; loss() does.
+    boundary.goals = skinned_goals(*m_skinning, *m_skin, std::max(0.0, t0), std::max(0.0, t1));
     return boundary;
 }
 

@@ -49,7 +49,7 @@ class CharacterScene : public ComparisonScene {
     /// Fitted to the first pose.
     ClothState start() const override { return m_start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
-    /// The garment is 0.3 m from where it was worn.
+    /// The garment is 0.3 m from where the skin would have taken it.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
@@ -60,9 +60,8 @@ class CharacterScene : public ComparisonScene {
 
     std::shared_ptr<const WeldedCharacter> m_skin;
     ClothState m_start;
-    Vec3 m_start_offset = Vec3::Zero();  ///< of the garment's middle from the skin's
     std::unique_ptr<const SkinBinding> m_band;
-    std::unique_ptr<const GarmentSkinning> m_skinning;  ///< null: nothing is painted
+    std::unique_ptr<const GarmentSkinning> m_skinning;
     std::vector<std::string> m_notes;
     int m_lead_in_frames;
 };
