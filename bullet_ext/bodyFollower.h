@@ -3,17 +3,15 @@
 #include <vector>
 
 #include "bullet_ext/bulletObstacles.h"
-#include "data/core/follower.h"
 
 class btSoftBody;
 
 namespace cloth {
 
-/// Lets a follower of a body's nodes show the end of the present world step.
-/// @param x        where the nodes are (|nodes| x 3, m)
-/// @param ignored  limbs that they ignore, or empty
-/// @param h        length of the world step (s)
-void showFollower(const btSoftBody& body, const Points& x, const std::vector<LimbSet>& ignored,
-                  BulletObstacles& obstacles, double h, Follower& follower);
+/// The obstacles around what is shown of a body, as they are at the end of the present world step.
+/// @param x  finite (m): where the nodes are, and whatever else is to be shown
+/// @param h  length of the world step (s)
+Boundary obstaclesAround(const btSoftBody& body, const std::vector<const Points*>& x,
+                         BulletObstacles& obstacles, double h);
 
 }  // namespace cloth

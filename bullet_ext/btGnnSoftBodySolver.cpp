@@ -15,6 +15,7 @@
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
 #include "bullet_ext/solveSteps.h"
+#include "collision/response/skin_blend.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/deadline.h"
@@ -245,7 +246,7 @@ const std::shared_ptr<cloth::BodyGoals>& btGnnSoftBodySolver::goalsOf(const btSo
 
 /// Goals stay when garment or stepper of a body change, and end with a change of its nodes.
 void btGnnSoftBodySolver::joinGoals(btSoftBody& body, Entry& entry) {
-    if (!entry.limits) return;
+    if (!entry.limits && !entry.goals) return;
     entry.step->setGoals(goalsOf(body, entry));
 }
 
@@ -442,7 +443,7 @@ void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follow
                             "make it for the mesh of the body, garmentOf(body)->rest()");
     Entry& entry = m_entries[body];
     entry.follower = std::move(follower);
-    if (entry.follower) entry.follower->show(cloth::nodePositions(*body), {}, {});
+    if (entry.follower) entry.follower->show(shownPositions(body), {}, {});
 }
 
 const cloth::Follower* btGnnSoftBodySolver::followerOf(const btSoftBody* body) const {
@@ -451,22 +452,62 @@ const cloth::Follower* btGnnSoftBodySolver::followerOf(const btSoftBody* body) c
 }
 
 void btGnnSoftBodySolver::showFollower(const btSoftBody& body, Entry& entry) {
-    if (!entry.follower) return;
-    if (entry.follower->simulated_size() != body.m_nodes.size()) {
+    if (entry.follower && entry.follower->simulated_size() != body.m_nodes.size()) {
         entry.follower.reset();
-        return say(cloth::softBodyName(body) +
-                   ": its nodes were changed, so the mesh that follows it stays where it is. "
-                   "Remedy: make one for the nodes of now, and call follow() with it");
+        say(cloth::softBodyName(body) +
+            ": its nodes were changed, so the mesh that follows it stays where it is. "
+            "Remedy: make one for the nodes of now, and call follow() with it");
     }
+    if (!entry.follower && !entry.blend) return;
+    const cloth::Points nodes = cloth::nodePositions(body);
+    if (nodes.rows() == 0 || !nodes.allFinite()) return;
     const auto begin = std::chrono::steady_clock::now();
     const bool isCloth = entry.stepping == Stepping::cloth;
     static const std::vector<cloth::LimbSet> none;
-    cloth::showFollower(body, cloth::nodePositions(body),
-                        isCloth ? entry.step->stepper().ignored_limbs() : none, m_obstacles, m_h,
-                        *entry.follower);
+    const auto& ignored = isCloth ? entry.step->stepper().ignored_limbs() : none;
+    const cloth::Points skin =
+        isCloth && entry.blend ? goalsOf(body, entry)->now() : cloth::Points();
+    const cloth::Boundary boundary =
+        cloth::obstaclesAround(body, {&nodes, &skin}, m_obstacles, m_h);
+    if (entry.blend) {
+        entry.blend->advance(m_h);
+        entry.blend->follow(nodes, skin, boundary, ignored);
+    }
+    if (entry.follower)
+        entry.follower->show(entry.blend ? entry.blend->vertices() : nodes, boundary, ignored);
+    if (entry.blend && entry.blend->weight() == 0.0 && !entry.blend->is_fading())
+        entry.blend.reset();  // it costs nothing again
     const std::chrono::duration<double, std::milli> passed =
         std::chrono::steady_clock::now() - begin;
     m_status.times.contact += passed.count();
+}
+
+/// At once, between world steps: what is shown is out of the obstacles after the next one.
+void btGnnSoftBodySolver::showWithoutObstacles(const btSoftBody& body, Entry& entry) {
+    const cloth::Points nodes = cloth::nodePositions(body);
+    if (entry.blend) entry.blend->follow(nodes, goalsOf(body, entry)->now(), {});
+    if (entry.follower && entry.follower->simulated_size() == body.m_nodes.size())
+        entry.follower->show(entry.blend ? entry.blend->vertices() : nodes, {}, {});
+}
+
+void btGnnSoftBodySolver::fadeToSkin(btSoftBody* body, double weight, double seconds) {
+    if (!body) throw ArgumentError("fadeToSkin()", "the soft body is null", "create it first");
+    Entry& entry = m_entries[body];
+    const auto blend = entry.blend ? entry.blend : std::make_shared<cloth::SkinBlend>();
+    blend->fade_to(weight, seconds);
+    if (!entry.blend) blend->follow(cloth::nodePositions(*body), {}, {});
+    entry.blend = blend;
+    goalsOf(*body, entry);
+    if (entry.step) entry.step->setGoals(entry.goals);
+    if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
+}
+
+cloth::Points btGnnSoftBodySolver::shownPositions(const btSoftBody* body) const {
+    if (!body) throw ArgumentError("shownPositions()", "the soft body is null", "create it first");
+    const auto it = m_entries.find(body);
+    const bool is_mixed = it != m_entries.end() && it->second.blend &&
+                          it->second.blend->vertices().rows() == body->m_nodes.size();
+    return is_mixed ? it->second.blend->vertices() : cloth::nodePositions(*body);
 }
 
 void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
@@ -490,8 +531,7 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (entry.step) entry.step->restart();
     body->updateNormals();
     body->updateBounds();
-    if (entry.follower && entry.follower->simulated_size() == body->m_nodes.size())
-        entry.follower->show(cloth::nodePositions(*body), {}, {});
+    showWithoutObstacles(*body, entry);
     if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
 }
 
@@ -534,7 +574,10 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             ++m_status.sleepingBodies;
             m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
         }
-        if (!body.isActive()) continue;
+        if (!body.isActive()) {
+            if (entry.blend && entry.blend->is_fading()) showFollower(body, entry);
+            continue;
+        }
         if (entry.stepping == Stepping::bullet) {
             body.solveConstraints();
             entry.handover.afterStep(body, static_cast<double>(solverdt));

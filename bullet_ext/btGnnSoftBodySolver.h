@@ -21,6 +21,7 @@ namespace cloth {
 
 class BodyGoals;
 class RootMotion;
+class SkinBlend;
 class SoftBodyStep;
 
 /// Makes the stepper of one garment. The garment outlives the stepper.
@@ -237,6 +238,25 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void follow(btSoftBody* body, std::shared_ptr<cloth::Follower> follower);
     /// What follows a body; null: nothing does, or it has ended.
     const cloth::Follower* followerOf(const btSoftBody* body) const;
+    /// Lets what is shown of a body fade from where its cloth is simulated to where its goals are,
+    /// or back: see cloth::SkinBlend. The cloth itself is not changed by it, and goes on.
+    ///
+    ///     solver.fadeToSkin(cape, 1.0, 0.5);    // skinned in half a second
+    ///     ...
+    ///     solver.setGoals(cape, goals, dt);     // before each step, as for limits
+    ///     world.stepSimulation(dt);
+    ///     draw(solver.shownPositions(cape));    // in place of the nodes
+    ///
+    /// What follows the body, see follow(), follows what is shown. No vertex of it is inside an
+    /// obstacle. The body need not have limits. A body that Bullet steps is shown as it is.
+    /// @param weight   0: simulated, as it is until this is called; 1: on the goals
+    /// @param seconds  of the world's time, 0 to 1e6; 0: at once, from the next world step on
+    /// @throws cloth::ArgumentError if the body is null or a number is out of range
+    void fadeToSkin(btSoftBody* body, double weight, double seconds = 0.0);
+    /// Where a body is shown: its nodes, or what fadeToSkin() made of them (|nodes| x 3, m, in the
+    /// world), as of the last world step.
+    /// @throws cloth::ArgumentError if the body is null
+    cloth::Points shownPositions(const btSoftBody* body) const;
     /// Moves a body at once, without what cloth does when it is dragged there: where its character
     /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
     ///
@@ -273,6 +293,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         std::shared_ptr<cloth::RootMotion> root;      ///< null: nobody asked for it
         std::shared_ptr<cloth::BodyGoals> goals;      ///< null: nobody asked for goals
         std::shared_ptr<cloth::Follower> follower;    ///< null: nobody asked for one
+        std::shared_ptr<cloth::SkinBlend> blend;      ///< null: nobody asked for it
         btGnnDetail detail;
         cloth::BulletHandover handover;
         size_t topology = 0;
@@ -301,6 +322,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void applyDetail(const btSoftBody& body, Entry& entry);
     bool isStepped(const btSoftBody* body) const;
     void showFollower(const btSoftBody& body, Entry& entry);
+    void showWithoutObstacles(const btSoftBody& body, Entry& entry);
     void giveUp(btSoftBody& body, Entry& entry, const std::string& why);
     void say(const std::string& text);
     Stepping steppingOf(const btSoftBody* body) const;

@@ -23,6 +23,10 @@ void check_height(const std::string& file, const WeldedCharacter& skin) {
     throw ArgumentError(file, "it is " + std::to_string(skin.height()) + " m high", remedy);
 }
 
+void check_surface(const std::string& file, const WeldedCharacter& skin) {
+    validate_mesh(file, skin.rest());
+}
+
 std::vector<int> vertices_between(const Points& x, const std::vector<double>& heights) {
     std::vector<int> found;
     for (int i = 0; i < x.rows() && !heights.empty(); ++i)

@@ -13,6 +13,10 @@ namespace cloth {
 /// @throws ArgumentError if the character is lower than 0.1 m or higher than 10 m
 void check_height(const std::string& file, const WeldedCharacter& skin);
 
+/// @throws ArgumentError naming the file if its skin is no surface that cloth can be kept off: an
+///         edge of more than two faces, a face without area
+void check_surface(const std::string& file, const WeldedCharacter& skin);
+
 /// The vertices of `x` (|V| x 3, m) between two heights, the option --pin.
 /// @param heights  lowest and highest y (m), or empty: no vertex
 /// @throws ArgumentError if no vertex is there

@@ -17,6 +17,7 @@
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
 #include "data/body/garment_fit.h"
+#include "data/body/garment_skinning.h"
 #include "data/body/skin_binding.h"
 #include "data/body/welded_character.h"
 #include "data/core/check_range.h"
@@ -24,6 +25,7 @@
 #include "data/core/surface_distance.h"
 #include "data/core/weld.h"
 #include "data/files/mesh_io.h"
+#include "data/files/painted_mesh.h"
 #include "demos/dressing_checks.h"
 #include "gnn/model/make_cloth.h"
 
@@ -47,6 +49,7 @@ struct Outcome {
 cloth::WeldedCharacter load_skin(const Options& options) {
     cloth::WeldedCharacter skin(options.character, options.skin, options.weld);
     cloth::check_height(options.character, skin);
+    cloth::check_surface(options.character, skin);
     std::printf("character  %s: %d vertices, %.2f m high, animation of %.2f s\n",
                 options.character.c_str(), static_cast<int>(skin.rest().vertices.rows()),
                 skin.height(), skin.duration());
@@ -54,13 +57,15 @@ cloth::WeldedCharacter load_skin(const Options& options) {
 }
 
 cloth::Garment load_garment(const Options& options) {
-    cloth::TriMesh mesh = cloth::load_mesh(options.garment, options.garment_mesh);
-    mesh.vertices *= options.garment_scale;
-    const cloth::WeldedMesh welded = cloth::weld_mesh(mesh, options.weld);
+    cloth::PaintedMesh painted = cloth::load_painted_mesh(options.garment, options.garment_mesh);
+    painted.mesh.vertices *= options.garment_scale;
+    const cloth::WeldedMesh welded = cloth::weld_mesh(painted.mesh, options.weld);
     const cloth::Fabric fabric =
         options.fabric == "real" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
     cloth::Garment garment("garment", welded.mesh, fabric,
                            cloth::vertices_between(welded.mesh.vertices, options.pin));
+    garment = garment.with_goals(cloth::welded_limits(painted.limits, welded));
+    if (garment.has_goals()) std::printf("goals      are painted on it: it stays near the skin\n");
     std::printf(
         "garment    %s: %d vertices (%d near ones joined), edges of %.0f mm, %.0f g, %d pinned\n",
         options.garment.c_str(), static_cast<int>(garment.vertex_count()), welded.merged,
@@ -138,6 +143,8 @@ Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
     // Pinned vertices ride on the skin.
     const std::vector<int>& pins = garment.pins();
     const cloth::SkinBinding band({skin.vertices(0.0), *skin.faces()}, start.x(pins, Eigen::all));
+    // Painted limits count from where the skin would take the garment.
+    const cloth::GarmentSkinning skinning = cloth::skin_garment(garment.rest().vertices, skin);
 
     constexpr double dt = 1.0 / 30.0;
     const double end = options.settle + (options.seconds > 0 ? options.seconds : skin.duration());
@@ -155,6 +162,8 @@ Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
                                                  static_cast<float>(places(row, 1)),
                                                  static_cast<float>(places(row, 2)));
         }
+        if (garment.has_goals())
+            solver.setGoals(cloth, cloth::skinned_goals(skinning, skin, now, next), dt);
         world.stepSimulation(static_cast<btScalar>(dt), 0);
         outcome.inside = solver.status().maxPenetration;
         outcome.deepest = std::max(outcome.deepest, outcome.inside);

@@ -94,7 +94,8 @@ class CharacterReader {
             names += " '" + other + "'";
         }
         if (names.empty())
-            fail("", "has no animation", "use load_mesh() for a mesh that does not move");
+            fail("", "has no animation",
+                 "export it with an animation; load_mesh() reads what does not move");
         fail("animation " + name, "there is no such animation", "give one of" + names);
     }
 

@@ -20,4 +20,12 @@ namespace cloth {
 ///         vertex within one and a half edges of a pin of the fine garment
 Garment carry_over(const Garment& fine, TriMesh mesh, std::string name);
 
+/// Limits of skinned goals at other places: interpolated at the nearest points of the mesh that
+/// they are painted on, as carry_over() does. Faces without area do not count.
+/// @param x       N x 3 (m)
+/// @param limits  of the mesh's vertices
+/// @return  of N vertices; arrays that `limits` does not have are empty
+/// @throws ArgumentError if the limits are of another mesh, or no face has an area
+GoalLimits limits_at(const Points& x, const TriMesh& mesh, const GoalLimits& limits);
+
 }  // namespace cloth

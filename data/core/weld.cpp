@@ -84,8 +84,9 @@ std::vector<int> representatives(const Points& vertices, double tolerance) {
 WeldedMesh weld_mesh(const TriMesh& mesh, double tolerance) {
     check_range("weld_mesh: tolerance", tolerance, 0.0, 0.01);
     check_mesh(mesh);
-    const std::vector<int> target = representatives(mesh.vertices, tolerance);
     WeldedMesh result;
+    result.target = representatives(mesh.vertices, tolerance);
+    const std::vector<int>& target = result.target;
     for (int i = 0; i < mesh.vertices.rows(); ++i) result.merged += target[i] != i;
 
     std::vector<std::array<int, 3>> faces;

@@ -9,9 +9,11 @@ namespace cloth {
 /// A mesh whose vertices at one place are one vertex.
 struct WeldedMesh {
     TriMesh mesh;
-    std::vector<int> kept;  ///< |mesh.vertices|: the vertex of the original, ascending
-    int merged = 0;         ///< vertices that became one with another
-    int dropped_faces = 0;  ///< faces that lost their area: two of their corners became one
+    std::vector<int> kept;    ///< |mesh.vertices|: the vertex of the original, ascending
+    std::vector<int> target;  ///< for each vertex of the original, that of the original which it
+                              ///< became: itself, or an earlier one
+    int merged = 0;           ///< vertices that became one with another
+    int dropped_faces = 0;    ///< faces that lost their area: two of their corners became one
 };
 
 /// Makes vertices that lie within `tolerance` of each other one, as files need it that repeat

@@ -64,6 +64,12 @@ TriMesh load_garment_mesh(const std::string& name) {
     return load_mesh(path);
 }
 
+PaintedMesh load_painted_garment(const std::string& name,
+                                 const std::optional<GoalColours>& colours) {
+    if (is_path(name)) return load_painted_mesh(name, "", FacesWithoutArea::refuse, colours);
+    return {load_garment_mesh(name), {}, false};
+}
+
 Garment load_garment(const std::string& name, const Fabric& fabric) {
     return Garment(fs::path(name).stem().string(), load_garment_mesh(name), fabric);
 }

@@ -5,6 +5,7 @@
 
 #include "data/core/cloth_state.h"
 #include "data/core/garment.h"
+#include "data/files/painted_mesh.h"
 
 namespace cloth {
 
@@ -17,6 +18,11 @@ std::vector<std::string> garment_names();
 /// @throws LoadError naming the garments there are if there is no such one, or if its file is
 ///         damaged
 TriMesh load_garment_mesh(const std::string& name);
+
+/// The same with what is painted on a garment of one's own; committed garments are not painted.
+/// @throws LoadError as load_garment_mesh() and load_painted_mesh()
+PaintedMesh load_painted_garment(const std::string& name,
+                                 const std::optional<GoalColours>& colours = {});
 
 /// The garment made of a fabric, without pins.
 ///

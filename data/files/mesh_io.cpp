@@ -18,6 +18,7 @@
 #include "data/core/errors.h"
 #include "data/files/mesh_file_check.h"
 #include "data/files/vertex_order.h"
+#include "data/files/vertex_paint.h"
 
 namespace cloth {
 
@@ -85,10 +86,11 @@ const aiScene& read_scene(const std::string& path, Assimp::Importer& importer) {
 class MeshBuilder {
  public:
     MeshBuilder(std::string path, std::map<std::string, FilePositions> file_positions,
-                FacesWithoutArea without_area)
+                FacesWithoutArea without_area, VertexPaint* paint)
         : m_path(std::move(path)),
           m_file_positions(std::move(file_positions)),
-          m_without_area(without_area) {}
+          m_without_area(without_area),
+          m_paint(paint) {}
 
     /// Meshes of one geometry (assimp cuts it by material) share their vertices.
     void add(const std::vector<Placement>& parts) {
@@ -169,10 +171,13 @@ class MeshBuilder {
     }
 
     void add_faces(const Placement& part, const std::map<Key, int>& numbers) {
+        std::vector<int> vertices(part.mesh->mNumVertices, -1);
         for (unsigned f = 0; f < part.mesh->mNumFaces; ++f) {
             Eigen::Vector3i face;
-            for (unsigned c = 0; c < 3; ++c)
-                face[c] = numbers.at(key_of(*part.mesh, part.mesh->mFaces[f].mIndices[c]));
+            for (unsigned c = 0; c < 3; ++c) {
+                const unsigned corner = part.mesh->mFaces[f].mIndices[c];
+                face[c] = vertices[corner] = numbers.at(key_of(*part.mesh, corner));
+            }
             const Vec3 a = m_vertices[static_cast<size_t>(face[0])];
             const Vec3 b = m_vertices[static_cast<size_t>(face[1])];
             const Vec3 c = m_vertices[static_cast<size_t>(face[2])];
@@ -184,11 +189,13 @@ class MeshBuilder {
                                 "it has no area", "remove degenerate faces in a mesh editor");
             m_faces.push_back(face);
         }
+        if (m_paint) m_paint->add(*part.mesh, vertices);
     }
 
     std::string m_path;
     std::map<std::string, FilePositions> m_file_positions;
     FacesWithoutArea m_without_area;
+    VertexPaint* m_paint;
     std::vector<Vec3> m_vertices;
     std::vector<Eigen::Vector3i> m_faces;
 };
@@ -201,6 +208,11 @@ bool same_geometry(const Placement& a, const Placement& b) {
 
 TriMesh load_mesh(const std::string& path, const std::string& mesh_name,
                   FacesWithoutArea without_area) {
+    return load_mesh(path, mesh_name, without_area, nullptr);
+}
+
+TriMesh load_mesh(const std::string& path, const std::string& mesh_name,
+                  FacesWithoutArea without_area, VertexPaint* paint) {
     Assimp::Importer importer;
     const aiScene& scene = read_scene(path, importer);
     std::vector<Placement> placements;
@@ -210,7 +222,8 @@ TriMesh load_mesh(const std::string& path, const std::string& mesh_name,
                         scene.mNumMeshes == 0
                             ? "give a file with at least one face"
                             : "give one of the names in the file: " + mesh_names(scene));
-    MeshBuilder builder(path, read_file_positions(path), without_area);
+    if (paint) paint->open(path);
+    MeshBuilder builder(path, read_file_positions(path), without_area, paint);
     for (size_t first = 0; first < placements.size();) {
         size_t last = first + 1;
         while (last < placements.size() && same_geometry(placements[first], placements[last]))

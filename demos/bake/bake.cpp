@@ -60,6 +60,7 @@ bool bake(const BakeScene& scene, Stepper& stepper, std::vector<BakedMesh>& mesh
     const double dt = scene.cloth->frame_time();
     const int lead_in = scene.cloth->lead_in_frames(), frames = scene.frames();
     ClothState state = scene.cloth->start();
+    bool is_lost = false;
     for (int frame = -lead_in; frame < frames; ++frame) {
         if (frame >= 0)
             for (BakedMesh& mesh : meshes) mesh.cache->add(mesh.positions(state, frame * dt));
@@ -68,9 +69,14 @@ bool bake(const BakeScene& scene, Stepper& stepper, std::vector<BakedMesh>& mesh
                   : watch.progress(frame + 1, frames, "frames");
         if (frame + 1 == frames) break;
         if (watch.interrupted()) return false;
-        if (!stepper.step(scene.cloth->frame_boundary(frame), dt, state).finite)
+        const Boundary boundary = scene.cloth->frame_boundary(frame);
+        if (!stepper.step(boundary, dt, state).finite)
             throw std::runtime_error("the step after frame " + std::to_string(frame) +
                                      " failed: take another --solver, or fewer --frames");
+        if (is_lost || !watch.lost) continue;
+        const std::string problem = scene.cloth->loss(boundary, state.x);
+        is_lost = !problem.empty();
+        if (is_lost) watch.lost(frame + 1, problem);
     }
     for (BakedMesh& mesh : meshes) mesh.cache->finish();
     return true;

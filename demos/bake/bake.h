@@ -30,6 +30,8 @@ std::string rest_file(const std::string& cache);
 struct BakeWatch {
     std::function<void(int done, int all, const std::string& what)> progress;
     std::function<bool()> interrupted;  ///< asked before each step
+    /// Told once, when the scene says that the garment is lost; may be null.
+    std::function<void(int frame, const std::string& problem)> lost = nullptr;
 };
 
 /// Steps the garment through the lead-in and the motion, writes every frame, and finishes the

@@ -10,7 +10,8 @@ BakeScene make_bake_scene(const SceneOptions& options) {
         return {scene,
                 scene->rest_skin(),
                 [scene](double time) { return scene->skin(time); },
-                {scene->garment().rest().faces}};
+                {scene->garment().rest().faces},
+                scene->notes()};
     }
     BodySceneSettings settings;
     settings.garment = options.garment;
@@ -24,6 +25,7 @@ BakeScene make_bake_scene(const SceneOptions& options) {
     BakeScene made{scene,
                    scene->body().body().rest_mesh(),
                    [scene](double time) { return scene->skin(time); },
+                   {},
                    {}};
     for (int part = 0; part < scene->outfit().part_count(); ++part)
         made.parts.push_back(scene->outfit().faces_of_part(part));

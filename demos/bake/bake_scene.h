@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "demos/bake/scene_options.h"
@@ -14,7 +15,8 @@ struct BakeScene {
     std::shared_ptr<const ComparisonScene> cloth;
     TriMesh body;                        ///< before any motion
     std::function<Points(double)> skin;  ///< its vertices at a time of the scene's clock (s)
-    std::vector<Faces> parts;  ///< faces of each garment, numbered as all its vertices are
+    std::vector<Faces> parts;        ///< faces of each garment, numbered as all its vertices are
+    std::vector<std::string> notes;  ///< what is to be told of the files, a sentence each
 
     int frames() const { return cloth->frames() + 1; }  ///< the first pose, and one for each step
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "data/body/garment_fit.h"
@@ -17,49 +18,81 @@ std::shared_ptr<const WeldedCharacter> character_of(const CharacterSceneSettings
     auto skin =
         std::make_shared<const WeldedCharacter>(settings.character, settings.skin, settings.weld);
     check_height(settings.character, *skin);
+    check_surface(settings.character, *skin);
     return skin;
 }
 
-/// At rest and as it is worn on the bind pose, which a waistband makes two shapes.
-struct WornGarment {
-    TriMesh rest;
-    Points worn;
-};
-
-WornGarment mesh_of(const CharacterSceneSettings& settings) {
-    check_range("--garment-scale", settings.garment_scale, 1e-6, 1e6);
-    const ClothState start = load_garment_start(settings.garment);
-    TriMesh mesh = load_garment_mesh(settings.garment);
-    mesh.vertices *= settings.garment_scale;
-    WeldedMesh welded = weld_mesh(mesh, settings.weld);
-    return {std::move(welded.mesh), settings.garment_scale * start.x(welded.kept, Eigen::all)};
+/// What the user is told of what is painted; nothing if nothing is.
+std::vector<std::string> notes_of(const PaintedMesh& painted, const GoalLimits& limits) {
+    std::vector<std::string> notes;
+    if (painted.unread_colours)
+        notes.push_back(
+            "the garment has vertex colours, which are not read; --goal-colours reads them as "
+            "goals");
+    if (limits.empty()) return notes;
+    const auto count = [](const auto& condition) {
+        return std::to_string(static_cast<long>(condition.count()));
+    };
+    const double infinity = std::numeric_limits<double>::infinity();
+    notes.push_back("goals are painted on it: " + count(limits.max_distance.array() < infinity) +
+                    " of its vertices have a largest distance, " +
+                    count(limits.backstop.array() < infinity) + " a backstop, " +
+                    count(limits.drive_stiffness.array() > 0.0) + " a drive");
+    return notes;
 }
 
-Garment garment_of(const CharacterSceneSettings& settings) {
-    TriMesh mesh = mesh_of(settings).rest;
-    const std::vector<int> pins = vertices_between(mesh.vertices, settings.pin);
-    return Garment("garment", std::move(mesh), fabric_named(settings.fabric), pins);
+Garment garment_of(const CharacterSceneSettings& settings, const TriMesh& rest,
+                   const GoalLimits& limits) {
+    return Garment("garment", rest, fabric_named(settings.fabric),
+                   vertices_between(rest.vertices, settings.pin))
+        .with_goals(limits);
 }
 
 }  // namespace
 
+/// At rest and as it is worn on the bind pose, which a waistband makes two shapes.
+struct CharacterScene::WornGarment {
+    TriMesh rest;
+    Points worn;
+    GoalLimits limits;
+    std::vector<std::string> notes;
+};
+
+CharacterScene::WornGarment CharacterScene::read_garment(const CharacterSceneSettings& settings) {
+    check_range("--garment-scale", settings.garment_scale, 1e-6, 1e6);
+    const ClothState start = load_garment_start(settings.garment);
+    PaintedMesh painted = load_painted_garment(settings.garment, settings.goal_colours);
+    painted.mesh.vertices *= settings.garment_scale;
+    WeldedMesh welded = weld_mesh(painted.mesh, settings.weld);
+    GoalLimits limits = welded_limits(painted.limits, welded);
+    std::vector<std::string> notes = notes_of(painted, limits);
+    return {std::move(welded.mesh), settings.garment_scale * start.x(welded.kept, Eigen::all),
+            std::move(limits), std::move(notes)};
+}
+
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings)
-    : CharacterScene(settings, character_of(settings)) {
+    : CharacterScene(settings, character_of(settings), read_garment(settings)) {
 }
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
-                               std::shared_ptr<const WeldedCharacter> skin)
-    : ComparisonScene(garment_of(settings), settings.rate),
+                               std::shared_ptr<const WeldedCharacter> skin, const WornGarment& worn)
+    : ComparisonScene(garment_of(settings, worn.rest, worn.limits), settings.rate),
       m_skin(std::move(skin)),
       m_start(ClothState::at_rest(garment())),
+      m_notes(worn.notes),
       m_lead_in_frames(static_cast<int>(std::lround(settings.settle * settings.rate))) {
     check_range("--clearance", settings.clearance, 1e-3, 0.05);
     check_range("--settle", settings.settle, 0.0, 60.0);
     distance_to_skin(garment(), *m_skin);
     GarmentFitSettings fit;
     fit.clearance = settings.clearance;
-    m_start.x = fit_garment({mesh_of(settings).worn, garment().rest().faces}, rest_skin(),
-                            m_skin->vertices(0.0), fit);
+    const TriMesh worn_mesh{worn.worn, garment().rest().faces};
+    m_start.x = fit_garment(worn_mesh, rest_skin(), m_skin->vertices(0.0), fit);
+    // Fitted to the pose that it was modelled on, no goal is inside the skin there.
+    const Points goals = garment().has_goals()
+                             ? fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit)
+                             : worn.worn;
+    m_skinning = std::make_unique<const GarmentSkinning>(skin_garment(goals, *m_skin));
     m_band = std::make_unique<const SkinBinding>(TriMesh{m_skin->vertices(0.0), *m_skin->faces()},
                                                  m_start.x(garment().pins(), Eigen::all));
     const int available = m_skin->frame_count(frame_time()) - 1;
@@ -73,10 +106,21 @@ Points CharacterScene::skin(double time) const {
     return m_skin->vertices(std::max(0.0, time));
 }
 
+std::string CharacterScene::loss(const Boundary& boundary, const Points& x) const {
+    constexpr double far = 0.3;  // m
+    const Vec3 moved = x.colwise().mean() - boundary.goals.x1.colwise().mean();
+    if (moved.norm() <= far) return "";
+    return garment().pins().empty() && !garment().has_goals()
+               ? "the garment slid off: give --pin LOW HIGH, the heights of what holds it"
+               : "the garment came off the body";
+}
+
 Boundary CharacterScene::boundary(double t0, double t1) const {
     Boundary boundary;
     boundary.obstacles.push_back(m_skin->obstacle(std::max(0.0, t0), std::max(0.0, t1)));
     boundary.pin_targets = m_band->positions(boundary.obstacles[0].x1);
+    // Garments without limits do not look at them; loss() does.
+    boundary.goals = skinned_goals(*m_skinning, *m_skin, std::max(0.0, t0), std::max(0.0, t1));
     return boundary;
 }
 

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "data/body/garment_skinning.h"
 #include "data/body/skin_binding.h"
 #include "data/body/welded_character.h"
+#include "data/files/painted_mesh.h"
 #include "demos/compare/comparison_scene.h"
 
 namespace cloth {
@@ -18,14 +21,18 @@ struct CharacterSceneSettings {
     double garment_scale = 1.0;  ///< metres per unit of the file, 1e-6 to 1e6
     double weld = 1e-4;          ///< vertices as near as this become one (m), 0 to 0.01
     double clearance = 4.5e-3;   ///< from skin to cloth at the start (m), 1e-3 to 0.05
-    std::vector<double> pin;     ///< lowest and highest vertex that rides on the skin (m), or empty
+    /// How colours of the garment's vertices are read as goals; empty: they are not. Attributes
+    /// of its file always are, see load_painted_mesh().
+    std::optional<GoalColours> goal_colours;
+    std::vector<double> pin;  ///< lowest and highest vertex that rides on the skin (m), or empty
     std::string fabric = "soft";  ///< see fabric_named()
     double settle = 0.5;          ///< the first pose is held for so long (s), 0 to 60
     int rate = 30;                ///< frames per second
     int steps = 0;                ///< of the animation; 0: all
 };
 
-/// A garment on an animated character. The clock starts with the animation; in the lead-in the
+/// A garment on an animated character, and near its skin as far as goals are painted in its file.
+/// The clock starts with the animation; in the lead-in the
 /// first pose is held and the garment comes to hang.
 class CharacterScene : public ComparisonScene {
  public:
@@ -33,6 +40,8 @@ class CharacterScene : public ComparisonScene {
     explicit CharacterScene(const CharacterSceneSettings& settings);
 
     const TriMesh& rest_skin() const { return m_skin->rest(); }
+    /// What is to be told of the garment's file, a sentence each.
+    const std::vector<std::string>& notes() const { return m_notes; }
     /// Skin of the character at a time of the clock (|V| x 3, m).
     Points skin(double time) const;
 
@@ -40,14 +49,20 @@ class CharacterScene : public ComparisonScene {
     /// Fitted to the first pose.
     ClothState start() const override { return m_start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
+    /// The garment is 0.3 m from where the skin would have taken it.
+    std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
+    struct WornGarment;
     CharacterScene(const CharacterSceneSettings& settings,
-                   std::shared_ptr<const WeldedCharacter> skin);
+                   std::shared_ptr<const WeldedCharacter> skin, const WornGarment& worn);
+    static WornGarment read_garment(const CharacterSceneSettings& settings);
 
     std::shared_ptr<const WeldedCharacter> m_skin;
     ClothState m_start;
     std::unique_ptr<const SkinBinding> m_band;
+    std::unique_ptr<const GarmentSkinning> m_skinning;
+    std::vector<std::string> m_notes;
     int m_lead_in_frames;
 };
 

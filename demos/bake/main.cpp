@@ -30,6 +30,7 @@ void tell_scene(const BakeScene& scene, const BakeOptions& options) {
     std::printf("%s, %d vertices, %d frames at %d Hz, by %s\n", options.garment.c_str(),
                 static_cast<int>(scene.cloth->garment().vertex_count()), scene.frames(),
                 options.rate, options.solver.c_str());
+    for (const std::string& note : scene.notes) std::printf("%s\n", note.c_str());
     if (options.frames > scene.frames()) std::printf("the motion has no more than these frames\n");
     if (options.resume) std::printf("frames that are there are computed again, and compared\n");
 }
@@ -40,10 +41,16 @@ void run(const BakeOptions& options) {
     std::vector<BakedMesh> meshes = open_caches(scene, options);
     tell_scene(scene, options);
     Progress line;
+    std::string problem;
     const bool whole =
         bake(scene, *stepper, meshes,
              {[&line](int done, int all, const std::string& what) { line.update(done, all, what); },
-              [] { return interrupted != 0; }});
+              [] { return interrupted != 0; },
+              [&problem](int frame, const std::string& what) {
+                  problem = (frame < 0 ? "before the first frame"
+                                       : "from frame " + std::to_string(frame) + " on") +
+                            std::string(": ") + what;
+              }});
     if (!whole)
         throw std::runtime_error("\ninterrupted at frame " +
                                  std::to_string(meshes[0].cache->frames()) + " of " +
@@ -52,6 +59,7 @@ void run(const BakeOptions& options) {
                                       ? options.out
                                       : unfinished_cache(options.out)) +
                                  "; the same command with --resume goes on");
+    if (!problem.empty()) std::printf("warning: %s\n", problem.c_str());
     for (const BakedMesh& mesh : meshes)
         std::printf("%s, of the mesh %s\n", mesh.cache->path().c_str(),
                     rest_file(mesh.cache->path()).c_str());

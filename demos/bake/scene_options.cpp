@@ -9,7 +9,8 @@ namespace cloth {
 namespace {
 
 /// As those of hello_character.
-void add_character(CLI::App& app, CharacterSceneSettings& character) {
+void add_character(CLI::App& app, SceneOptions& options) {
+    CharacterSceneSettings& character = options.character;
     app.add_option("--character", character.character,
                    "rigged and animated file (.glb, .fbx, ...) that wears a mesh file,\n"
                    "instead of the project's body")
@@ -22,6 +23,11 @@ void add_character(CLI::App& app, CharacterSceneSettings& character) {
     app.add_option("--clearance", character.clearance, "from skin to cloth at the start (m)");
     app.add_option("--pin", character.pin, "lowest and highest vertex that rides on the skin (m)")
         ->expected(2);
+    app.add_option("--goal-colours", options.goal_colours,
+                   "read its garment's vertex colours as goals: red 0 is held by the skin, red\n"
+                   "just below 1 may be so far from it (m, 0.001 to 10), red 1 is free. Goals\n"
+                   "in attributes of its file are always read")
+        ->type_name("M");
     app.add_option("--settle", character.settle, "its first pose is held for so long (s)");
 }
 
@@ -42,11 +48,13 @@ void add_scene(CLI::App& app, SceneOptions& options) {
         ->type_name("NAME");
     add_whole_number(app, "--rate", options.rate, 10, 240,
                      "frames per second, and steps (default 30, which networks need)");
-    add_character(app, options.character);
+    add_character(app, options);
 }
 
 void finish_scene(SceneOptions& options) {
     if (options.character.character.empty()) {
+        if (options.goal_colours != 0.0)
+            throw UsageError("--goal-colours: it is for the garment of a --character");
         if (options.motion.empty()) options.motion = "01_01";
         return check_garment_name(options.garment);
     }
@@ -54,6 +62,11 @@ void finish_scene(SceneOptions& options) {
     if (!character.pin.empty() && character.pin.size() != 2)
         throw UsageError("--pin: give the lowest and the highest height");
     character.garment = options.garment;
+    if (options.goal_colours != 0.0) {
+        character.goal_colours.emplace();
+        character.goal_colours->max_distance = options.goal_colours;
+        character.goal_colours->check();
+    }
     character.skin.animation = options.motion;
     character.fabric = options.fabric;
     character.rate = options.rate;

@@ -16,6 +16,8 @@ struct SceneOptions {
     std::string garment = "tshirt";    ///< of the wardrobe, or the mesh file for a character
     std::string shape = "default";     ///< of the project's body, see body_named()
     std::string motion;                ///< of the project's body, or the character's animation
+    double goal_colours = 0.0;         ///< of a character's garment: what red just below 1 is (m);
+                                       ///< 0: its colours are not read
     std::string fabric = "soft";
     std::string solver = "quasi-newton";
     int rate = 30;   ///< frames and steps per second

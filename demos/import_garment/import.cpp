@@ -4,7 +4,9 @@
 #include <set>
 
 #include "data/body/garment_fit.h"
+#include "data/core/carry_over.h"
 #include "data/files/mesh_io.h"
+#include "data/files/painted_mesh.h"
 #include "demos/import_garment/picture.h"
 #include "demos/import_garment/report.h"
 #include "demos/import_garment/wearer.h"
@@ -27,6 +29,19 @@ std::vector<std::string> file_names(const ImportOptions& options, const GarmentI
     return names;
 }
 
+/// What is painted on the mesh that was read, at the vertices of what was made of it.
+std::vector<GoalLimits> carried_limits(GarmentImport& import, const PaintedMesh& painted) {
+    if (painted.unread_colours)
+        import.warnings.push_back(
+            "it has vertex colours, which are not read. --goal-colours M reads them as goals");
+    std::vector<GoalLimits> limits(import.garments.size());
+    if (painted.limits.empty()) return limits;
+    for (size_t k = 0; k < limits.size(); ++k)
+        limits[k] = limits_at(import.garments[k].worn.vertices, painted.mesh, painted.limits);
+    import.changes.push_back("the goals that are painted on it were carried over, into a PLY file");
+    return limits;
+}
+
 /// Garments are kept for the body default, from which fit_outfit() takes them to others.
 void carry_to_default(ImportedGarment& garment, const Body& from, double clearance) {
     GarmentFitSettings settings;
@@ -41,8 +56,9 @@ void carry_to_default(ImportedGarment& garment, const Body& from, double clearan
 
 ImportResult import_file(const ImportOptions& options) {
     const Wearer wearer = load_wearer(options);
-    GarmentImport import =
-        import_garment(load_clothes(options, wearer), wearer.skin, options.import);
+    const PaintedMesh painted = load_clothes(options, wearer);
+    GarmentImport import = import_garment(painted.mesh, wearer.skin, options.import);
+    const std::vector<GoalLimits> limits = carried_limits(import, painted);
     const Image picture = options.picture ? import_picture(import, wearer.skin) : Image();
 
     std::filesystem::create_directories(options.out);
@@ -53,8 +69,12 @@ ImportResult import_file(const ImportOptions& options) {
         ImportedGarment& garment = import.garments[k];
         if (wearer.body && options.body != "default")
             carry_to_default(garment, *wearer.body, options.import.clearance);
-        written.push_back({names[k] + ".obj", ""});
-        save_obj(written[k].file, {garment.rest, garment.worn.faces});
+        written.push_back({names[k] + (limits[k].empty() ? ".obj" : ".ply"), ""});
+        const TriMesh rest{garment.rest, garment.worn.faces};
+        if (limits[k].empty())
+            save_obj(written[k].file, rest);
+        else
+            save_painted_ply(written[k].file, rest, limits[k]);
         const std::string worn = names[k] + ".worn.obj";
         std::error_code none;
         std::filesystem::remove(worn, none);  // of an earlier import

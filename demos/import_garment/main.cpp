@@ -5,8 +5,10 @@
 #include "demos/import_garment/import.h"
 
 int main(int argc, char** argv) {
-    return cloth::run_program(argc, argv, [](const std::vector<std::string>& arguments) {
-        const cloth::ImportOptions options = cloth::parse_import_options(arguments);
+    return cloth::run_program(argc, argv, [argv](const std::vector<std::string>& arguments) {
+        cloth::ImportOptions options = cloth::parse_import_options(arguments);
+        const std::string self = argv[0];
+        options.programs = self.substr(0, self.rfind('/') + 1);
         std::printf("%s", cloth::import_file(options).text.c_str());
     });
 }

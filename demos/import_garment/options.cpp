@@ -14,6 +14,7 @@ namespace {
 
 struct Units {
     std::string garment, character, up = "y";
+    double goal_colours = 0.0;
     std::vector<double> move;
 };
 
@@ -33,6 +34,13 @@ void add_garment_file(CLI::App& app, ImportOptions& options, Units& units) {
         ->check(CLI::IsMember({"y", "z"}).description(""))
         ->type_name("y|z");
     app.add_option("--move", units.move, "then by so much (m)")->expected(3)->type_name("X Y Z");
+}
+
+void add_paint(CLI::App& app, Units& units) {
+    app.add_option("--goal-colours", units.goal_colours,
+                   "read vertex colours as goals, as bake does, and carry them over; red just\n"
+                   "below 1 is so far from the skin (m). Goals in attributes always are")
+        ->type_name("M");
 }
 
 void add_wearer(CLI::App& app, ImportOptions& options, Units& units) {
@@ -84,16 +92,23 @@ void check(ImportOptions& options, const Units& units) {
     options.z_up = units.up == "z";
     check_range("--scale", options.scale, 1e-6, 1e6);
     for (int axis = 0; axis < 3; ++axis) check_range("--move", options.move[axis], -1e3, 1e3);
+    if (units.goal_colours != 0.0) {
+        options.goal_colours.emplace();
+        options.goal_colours->max_distance = units.goal_colours;
+        options.goal_colours->check();
+    }
     options.import.check();
     if (options.name.empty()) options.name = std::filesystem::path(options.file).stem().string();
     if (options.name.empty() || options.name.find_first_of("/+") != std::string::npos)
         throw UsageError("--name " + options.name + ": give a name without / and +");
     if (options.character.empty()) body_shape_named(options.body);
-    const std::filesystem::path result = options.out + "/" + options.name + ".obj";
-    std::error_code none;
-    if (std::filesystem::equivalent(result, options.file, none))
-        throw UsageError("--out " + options.out + ": " + options.file +
-                         " would be overwritten; give another folder or --name");
+    for (const char* const ending : {".obj", ".ply"}) {
+        const std::filesystem::path result = options.out + "/" + options.name + ending;
+        std::error_code none;
+        if (std::filesystem::equivalent(result, options.file, none))
+            throw UsageError("--out " + options.out + ": " + options.file +
+                             " would be overwritten; give another folder or --name");
+    }
 }
 
 }  // namespace
@@ -105,6 +120,7 @@ ImportOptions parse_import_options(const std::vector<std::string>& arguments) {
                  "import_garment");
     set_up(app);
     add_garment_file(app, options, units);
+    add_paint(app, units);
     add_wearer(app, options, units);
     add_work(app, options.import);
     app.add_option("--name", options.name, "of the garment (default: that of the file)")
@@ -114,7 +130,8 @@ ImportOptions parse_import_options(const std::vector<std::string>& arguments) {
     app.add_flag("--no-picture", no_picture, "write the meshes and the report only");
     app.footer(
         "Writes NAME.obj, and for what sits on a waist NAME.worn.obj: where the vertices of\n"
-        "NAME.obj are when it is worn. A file with several pieces gives NAME_top.obj,\n"
+        "NAME.obj are when it is worn. If goals are painted on it, NAME.ply is written in\n"
+        "place of NAME.obj, with them. A file with several pieces gives NAME_top.obj,\n"
         "NAME_trousers.obj and so on. NAME.import.json and NAME.import.txt say what was found\n"
         "and done, NAME.import.png shows it before and after.");
     parse(app, arguments);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "data/authoring/garment_import.h"
 #include "data/body/skinned_character.h"
+#include "data/files/painted_mesh.h"
 
 namespace cloth {
 
@@ -21,9 +23,12 @@ struct ImportOptions {
     std::string body = "default";  ///< that the file was modelled on, see body_named()
 
     GarmentImportSettings import;
-    std::string name;  ///< of the garment; empty: the file's
+    std::optional<GoalColours> goal_colours;  ///< see load_painted_mesh()
+    std::string name;                         ///< of the garment; empty: the file's
     std::string out = "out/import";
     bool picture = true;
+    std::string
+        programs;  ///< what is put before the programs that are proposed: their folder and /
 };
 
 /// @throws UsageError naming the option; HelpText if it is asked for; ArgumentError for a unit or a

@@ -97,29 +97,34 @@ std::string next_text(const ImportOptions& options, const GarmentImport& import,
         std::string outfit;
         for (const size_t k : outermost_first(import, skin))
             outfit += (outfit.empty() ? "" : "+") + written[k].file;
-        text += "  compare --garment " + outfit + " --body " + options.body + "\n";
-        return text + "  bake --garment " + outfit + " --out out/cloth.pc2 --body out/body.pc2\n";
+        text += "  " + options.programs + "compare --garment " + outfit + " --body " +
+                options.body + "\n";
+        return text + "  " + options.programs + "bake --garment " + outfit +
+               " --out out/cloth.pc2 --body out/body.pc2\n";
     }
     for (size_t k = 0; k < written.size(); ++k) {
         const GarmentSupport& support = import.garments[k].support;
-        text += "  bake --character " + options.character +
-                (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
+        std::string scene =
+            " --character " + options.character +
+            (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
         char number[64];
         if (options.skin.scale != 1.0) {
             std::snprintf(number, sizeof number, " --character-scale %.9g", options.skin.scale);
-            text += number;
+            scene += number;
         }
-        text += " --garment " + written[k].file;
+        scene += " --garment " + written[k].file;
         if (import.clearance < options.import.clearance) {
             std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
-            text += number;
+            scene += number;
         }
         if (support.kind == GarmentSupport::Kind::pins) {
             std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low,
                           support.pin_high);
-            text += number;
+            scene += number;
         }
-        text += " --out out/cloth.pc2 --body out/body.pc2\n";
+        text += "  " + options.programs + "viewer" + scene + "\n";
+        text +=
+            "  " + options.programs + "bake" + scene + " --out out/cloth.pc2 --body out/body.pc2\n";
     }
     return text;
 }

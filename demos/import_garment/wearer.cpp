@@ -90,19 +90,22 @@ Wearer load_wearer(const ImportOptions& options) {
     }
     const WeldedCharacter character(options.character, options.skin, options.character_weld);
     check_height(options.character, character);
+    check_surface(options.character, character);
     return {options.character, character.rest(), nullptr};
 }
 
-TriMesh load_clothes(const ImportOptions& options, const Wearer& wearer) {
-    if (is_mhclo(options.file)) return load_makehuman_clothes(options);
-    TriMesh mesh = load_mesh(options.file, options.mesh, FacesWithoutArea::keep);
+PaintedMesh load_clothes(const ImportOptions& options, const Wearer& wearer) {
+    if (is_mhclo(options.file)) return {load_makehuman_clothes(options), {}, false};
+    PaintedMesh painted =
+        load_painted_mesh(options.file, options.mesh, FacesWithoutArea::keep, options.goal_colours);
+    TriMesh& mesh = painted.mesh;
     const Points in_file = mesh.vertices;
     if (options.z_up) mesh.vertices = with_y_up(mesh.vertices);
     mesh.vertices *= options.scale;
     mesh.vertices.rowwise() += options.move.transpose();
     if (!is_in_place(mesh.vertices, wearer.skin.vertices))
         refuse_place(options, in_file, mesh.vertices, wearer.skin);
-    return mesh;
+    return painted;
 }
 
 }  // namespace cloth

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "data/body/body.h"
+#include "data/files/painted_mesh.h"
 #include "demos/import_garment/options.h"
 
 namespace cloth {
@@ -17,11 +18,11 @@ struct Wearer {
 /// @throws LoadError, ArgumentError if the character cannot be had, or is not of a person's height
 Wearer load_wearer(const ImportOptions& options);
 
-/// The garment's mesh in metres, y up: scaled, turned and moved as the options say. MakeHuman's
-/// clothes are put on the wearer's body.
+/// The garment's mesh in metres, y up: scaled, turned and moved as the options say; and what is
+/// painted on it. MakeHuman's clothes are put on the wearer's body.
 /// @throws LoadError, ArgumentError if it cannot be read, or is not where the wearer is; the
 /// message
 ///         names the unit and the up axis that would fit
-TriMesh load_clothes(const ImportOptions& options, const Wearer& wearer);
+PaintedMesh load_clothes(const ImportOptions& options, const Wearer& wearer);
 
 }  // namespace cloth

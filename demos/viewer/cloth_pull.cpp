@@ -1,6 +1,7 @@
 #include "demos/viewer/cloth_pull.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "data/core/check_range.h"
 
@@ -54,18 +55,35 @@ ClothPull::ClothPull(const Garment& garment, int vertex, const PullSettings& set
     m_drive = (m_drive * (settings.stiffness / sum)).cwiseMin(most);
 }
 
-GoalLimits ClothPull::limits() const {
-    GoalLimits limits;
-    limits.drive_stiffness = m_drive;
+GoalLimits ClothPull::limits(const GoalLimits& own) const {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    GoalLimits limits = own;
+    if (limits.drive_stiffness.size() == 0) limits.drive_stiffness.setZero(m_drive.size());
+    for (const int i : m_patch) {
+        limits.drive_stiffness[i] = m_drive[i];
+        if (limits.drive_damping.size() > 0) limits.drive_damping[i] = 0.0;
+        if (limits.max_distance.size() > 0) limits.max_distance[i] = infinity;
+        if (limits.backstop.size() > 0) limits.backstop[i] = infinity;
+    }
     return limits;
 }
 
-SkinGoals ClothPull::goals(const Points& x, const Vec3& target) const {
+SkinGoals ClothPull::goals(const Points& x, const Vec3& target, const GoalLimits& own,
+                           const SkinGoals& skin) const {
     Vec3 pull = target - x.row(m_vertex).transpose();
     const double distance = pull.norm();
     if (distance > m_settings.max_distance) pull *= m_settings.max_distance / distance;
-    SkinGoals goals = SkinGoals::at(x);
-    for (const int i : m_patch) goals.x1.row(i) += pull.transpose();
+    SkinGoals goals = skin.empty() ? SkinGoals::at(x) : skin;
+    for (const int i : m_patch) {
+        goals.x0.row(i) = x.row(i);
+        goals.x1.row(i) = x.row(i) + pull.transpose();
+    }
+    if (skin.empty()) return goals;
+    std::vector<VertexGoal> allowed;
+    take_goals(own, skin, std::vector<char>(static_cast<size_t>(x.rows()), 0), 1.0, allowed);
+    for (const VertexGoal& goal : allowed)
+        if (m_drive[goal.vertex] > 0.0)
+            goals.x1.row(goal.vertex) = goal.within(goals.x1.row(goal.vertex));
     return goals;
 }
 

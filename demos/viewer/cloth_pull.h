@@ -28,10 +28,14 @@ class ClothPull {
     int vertex() const { return m_vertex; }
     const std::vector<int>& patch() const { return m_patch; }  ///< the vertex first
     /// Drives of the patch's vertices; they shrink towards its border, and sum to the stiffness.
-    GoalLimits limits() const;
+    /// Other vertices keep the limits of `own`, which are the garment's. A vertex has one goal, so
+    /// in the patch that is the hand's, which goals() keeps within the garment's limits.
+    GoalLimits limits(const GoalLimits& own = {}) const;
     /// Goals of a step from x (|V| x 3, m): the whole patch is pulled by as much as its vertex is
     /// away from `target` (m), but not by more than the largest distance.
-    SkinGoals goals(const Points& x, const Vec3& target) const;
+    /// @param own, skin  the garment's limits and goals: no vertex is pulled out of them
+    SkinGoals goals(const Points& x, const Vec3& target, const GoalLimits& own = {},
+                    const SkinGoals& skin = {}) const;
 
  private:
     int m_vertex;

@@ -68,7 +68,7 @@ std::unique_ptr<ViewerScene::Worn> ViewerScene::wear(const std::string& solver,
                                                      const Fabric& fabric,
                                                      const ClothPull* pull) const {
     Garment garment = m_base.cloth->garment().with_fabric(fabric);
-    if (pull) garment = garment.with_goals(pull->limits());
+    if (pull) garment = garment.with_goals(pull->limits(garment.goal_limits()));
     auto worn = std::make_unique<Worn>(m_base.cloth, std::move(garment));
     worn->stepper = make_solver(solver, worn->scene, {{}, m_threads, nullptr});
     worn->stepper->prepare(frame_time());
@@ -149,7 +149,9 @@ Boundary ViewerScene::next_boundary(const ViewerControls& controls) const {
                                                motion_time(m_frame.frame + (moves ? 1 : 0)));
     boundary.trees = m_trees;
     boundary.accelerations = wind_accelerations(m_wind, garment(), m_state, frame_time());
-    if (m_pull) boundary.goals = m_pull->goals(m_state.x, controls.pull->target);
+    if (m_pull)
+        boundary.goals = m_pull->goals(m_state.x, controls.pull->target, garment().goal_limits(),
+                                       boundary.goals);
     return boundary;
 }
 

@@ -82,7 +82,9 @@ class ViewerScene {
 
     const ViewerFrame& frame() const { return m_frame; }
     const ClothState& state() const { return m_state; }
-    const Garment& garment() const;                                   ///< of the fabric at present
+    const Garment& garment() const;  ///< of the fabric at present
+    /// What is to be told of the files, a sentence each.
+    const std::vector<std::string>& notes() const { return m_base.notes; }
     double frame_time() const { return m_base.cloth->frame_time(); }  ///< (s), of a step
     int frames() const { return m_base.cloth->frames(); }             ///< of the motion
     const Faces& body_faces() const { return m_base.body.faces; }

@@ -85,6 +85,7 @@ class Viewer {
     /// What is shown of a new scene.
     void show_scene() {
         m_shown = m_scene->frame();
+        for (const std::string& note : m_scene->notes()) std::printf("%s\n", note.c_str());
         m_body_faces = std::make_shared<const Faces>(m_scene->body_faces());
         m_part_faces.clear();
         for (const Faces& part : m_scene->parts())

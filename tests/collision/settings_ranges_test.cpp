@@ -1,5 +1,6 @@
 #include "collision/proximity/limb_overlap.h"
 #include "collision/response/contact_projection.h"
+#include "collision/response/skin_blend.h"
 #include "collision/self/self_contact_settings.h"
 #include "data/authoring/sheet.h"
 #include "tests/ranges.h"
@@ -30,6 +31,16 @@ TEST(SettingsRanges, ContactProjection) {
     expect_range("ContactProjectionSettings.sweeps", &S::sweeps, 1, 1000, use);
     expect_range("ContactProjectionSettings.most", &S::most, 1.0, 10.0, use);
     expect_range("ContactProjectionSettings.growth", &S::growth, 0.01, 1.0, use);
+}
+
+TEST(SettingsRanges, SkinBlend) {
+    using S = SkinBlendSettings;
+    const auto use = [](const S& settings) { settings.check(); };
+    expect_range("SkinBlendSettings.distance", &S::distance, 0.0, 5e-3, use);
+    expect_range("SkinBlendSettings.deepest", &S::deepest, 0.01, 1.0, use);
+    expect_range("fade_to(): weight", 0.0, 1.0, [](double value) { SkinBlend().fade_to(value); });
+    expect_range("fade_to(): seconds", 0.0, 1e6,
+                 [](double value) { SkinBlend().fade_to(1.0, value); });
 }
 
 TEST(SettingsRanges, SelfContact) {

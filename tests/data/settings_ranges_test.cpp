@@ -1,3 +1,4 @@
+#include "data/authoring/garment_import.h"
 #include "data/authoring/garment_recipe.h"
 #include "data/authoring/sheet.h"
 #include "data/body/animated_body.h"
@@ -86,6 +87,20 @@ TEST(SettingsRanges, GarmentRecipe) {
     EXPECT_NO_THROW(use(recipe)) << "no sleeves";
     recipe.landmarks["nose"] = Vec3::Zero();
     EXPECT_THROW(use(recipe), ArgumentError);
+}
+
+TEST(SettingsRanges, GarmentImport) {
+    using S = GarmentImportSettings;
+    const std::string name = "GarmentImportSettings.";
+    const auto use = [](const S& settings) { settings.check(); };
+    expect_range(name + "weld", &S::weld, 0.0, 0.01, use);
+    expect_range(name + "clearance", &S::clearance, 1e-3, 0.05, use);
+    expect_range(name + "most_inside", &S::most_inside, 0.0, 1.0, use);
+    expect_range(name + "smallest_piece", &S::smallest_piece, 0.0, 1.0, use);
+    expect_range(name + "vertices", &S::vertices, 500, 60000, use);
+    S().check();  // 0 vertices: as they come
+    expect_range(name + "band_width", &S::band_width, 0.02, 0.1, use);
+    expect_range(name + "band_ratio", &S::band_ratio, 0.5, 1.0, use);
 }
 
 TEST(SettingsRanges, GarmentFit) {

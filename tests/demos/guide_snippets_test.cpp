@@ -146,6 +146,22 @@ TEST_F(GuideSnippets, ClothesThatFollowTheSkin) {
     EXPECT_TRUE(solver.status().messages.empty());
 }
 
+TEST_F(GuideSnippets, FadingToTheSkin) {
+    const double now = 0.0, dt = 1.0 / 30.0;
+    const cloth::WeldedCharacter character(cloth::model_path("glTF2/simple_skin/simple_skin.gltf"),
+                                           {}, 1e-4);
+    const cloth::GarmentSkinning skinning =
+        cloth::skin_garment(cloth::nodePositions(*body), character);
+    solver.fadeToSkin(body, /*weight=*/1.0, /*seconds=*/0.5);  // 0: simulated, 1: skinned
+    solver.setGoals(body, cloth::skinned_goals(skinning, character, now, now + dt), dt);
+    world->stepSimulation(static_cast<btScalar>(dt), 0);
+    const cloth::Points shown = solver.shownPositions(body);
+    const cloth::Points nodes = cloth::nodePositions(*body);
+    const cloth::Points goals = cloth::skinned_goals(skinning, character, now, now + dt).x1;
+    EXPECT_LT((shown - (nodes + (goals - nodes) * (dt / 0.5))).rowwise().norm().maxCoeff(), 1e-9);
+    EXPECT_TRUE(solver.status().messages.empty());
+}
+
 TEST_F(GuideSnippets, Status) {
     expect_stepped();
     const btGnnSolverStatus& status = solver.status();

@@ -18,6 +18,7 @@
 #include "data/files/mesh_io.h"
 #include "data/files/mhclo.h"
 #include "data/files/npy_array.h"
+#include "data/files/painted_mesh.h"
 #include "data/files/point_cache_reader.h"
 #include "gnn/model/weights.h"
 #include "gnn/skinning/skinning_weights.h"
@@ -46,6 +47,18 @@ std::string check_mesh(const std::string& path) {
     if (!in_range(mesh.faces, mesh.vertices.rows())) return "a corner is out of range";
     const Points areas = face_area_vectors(mesh.vertices, mesh.faces);
     return areas.rowwise().norm().minCoeff() > 0.0 ? "" : "a face has no area";
+}
+
+std::string check_painted_mesh(const std::string& path) {
+    const PaintedMesh painted =
+        load_painted_mesh(path, "", FacesWithoutArea::refuse, GoalColours());
+    if (painted.mesh.vertices.rows() == 0) return "an empty mesh";
+    try {
+        check(painted.limits, painted.mesh.vertices.rows(), "limits");
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "";
 }
 
 std::string check_rig(const std::string& path) {
@@ -280,6 +293,23 @@ TEST(LoadersFuzz, Gltf) {
 
 TEST(LoadersFuzz, BinaryGltf) {
     fuzz_files({"glb", glb_file(), check_mesh});
+}
+
+TEST(LoadersFuzz, PaintedGltf) {
+    fuzz_files({"gltf", painted_gltf_file(), check_painted_mesh});
+}
+
+TEST(LoadersFuzz, PaintedBinaryGltf) {
+    fuzz_files({"glb", painted_glb_file(), check_painted_mesh});
+}
+
+TEST(LoadersFuzz, PaintedPly) {
+    fuzz_files({"ply", painted_ply_file(false), check_painted_mesh});
+    fuzz_files({"ply", painted_ply_file(true), check_painted_mesh});
+}
+
+TEST(LoadersFuzz, ColouredObj) {
+    fuzz_files({"obj", coloured_obj_file(), check_painted_mesh});
 }
 
 TEST(LoadersFuzz, Collada) {

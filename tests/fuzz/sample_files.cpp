@@ -52,6 +52,30 @@ std::string ascii_ply_file() {
     return text;
 }
 
+std::string painted_ply_file(bool big_endian) {
+    std::string bytes = ply_header(big_endian ? "binary_big_endian" : "binary_little_endian");
+    const std::string red = "property uchar red\n";
+    bytes.replace(bytes.find(red), red.size(),
+                  "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                  "property float max_distance\nproperty ushort drive_damping\n");
+    for (int i = 0; i < 6; ++i) {
+        for (const float coordinate : strip_positions[i]) append(bytes, coordinate, big_endian);
+        for (int channel = 0; channel < 3; ++channel) append(bytes, std::uint8_t{200});
+        append(bytes, 0.05f * static_cast<float>(i), big_endian);
+        append(bytes, static_cast<std::uint16_t>(i), big_endian);
+    }
+    for (const auto& f : strip_faces) {
+        append(bytes, std::uint8_t{3});
+        for (const int corner : f) append(bytes, std::int32_t{corner}, big_endian);
+    }
+    return bytes;
+}
+
+std::string coloured_obj_file() {
+    return "v 0.1 0 0 1 1 1\nv 1 0 0 0.5 0.5 0\nv 1 1 0.25 0 0 1\nv 0 1 0 0.2 1 1\n"
+           "f 1 2 3 4\n";
+}
+
 std::string binary_ply_file(bool big_endian) {
     std::string bytes = ply_header(big_endian ? "binary_big_endian" : "binary_little_endian");
     for (const auto& p : strip_positions) {
@@ -145,15 +169,21 @@ std::string accessor(int buffer_view, int component, int count, const std::strin
            ",\"count\":" + std::to_string(count) + ",\"type\":\"" + type + "\"" + more + "}";
 }
 
+/// With limits of goals if the numbers have them.
 std::string gltf_json(const GltfNumbers& numbers, const std::string& uri) {
+    const bool is_painted = numbers.begins.size() > 7;
     std::string views;
     for (size_t k = 0; k < numbers.begins.size(); ++k)
         views += (k > 0 ? ",\n" : "") + view(numbers, k);
-    return "{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\n\"scenes\":[{\"nodes\":[0]}],\n"
-           "\"nodes\":[{\"name\":\"strip\",\"mesh\":0,\"skin\":0,\"children\":[1]},\n"
-           "{\"name\":\"lower\",\"children\":[2]},{\"name\":\"upper\",\"translation\":[0,1,0]}],\n"
-           "\"meshes\":[{\"name\":\"strip\",\"primitives\":[{\"attributes\":{\"POSITION\":1,"
-           "\"JOINTS_0\":2,\"WEIGHTS_0\":3},\"indices\":0}]}],\n"
+    return std::string(
+               "{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\n\"scenes\":[{\"nodes\":[0]}],\n"
+               "\"nodes\":[{\"name\":\"strip\",\"mesh\":0,\"skin\":0,\"children\":[1]},\n"
+               "{\"name\":\"lower\",\"children\":[2]},{\"name\":\"upper\",\"translation\":[0,1,0]}]"
+               ",\n"
+               "\"meshes\":[{\"name\":\"strip\",\"primitives\":[{\"attributes\":{\"POSITION\":1,"
+               "\"JOINTS_0\":2,\"WEIGHTS_0\":3") +
+           (is_painted ? ",\"_MAX_DISTANCE\":7,\"_DRIVE_DAMPING\":8" : "") +
+           "},\"indices\":0}]}],\n"
            "\"skins\":[{\"inverseBindMatrices\":4,\"joints\":[1,2]}],\n"
            "\"animations\":[{\"name\":\"bend\",\"channels\":[{\"sampler\":0,\"target\":{\"node\":2,"
            "\"path\":\"rotation\"}}],\"samplers\":[{\"input\":5,\"interpolation\":\"LINEAR\","
@@ -165,7 +195,11 @@ std::string gltf_json(const GltfNumbers& numbers, const std::string& uri) {
            accessor(2, 5121, 6, "VEC4") + ",\n" + accessor(3, 5126, 6, "VEC4") + ",\n" +
            accessor(4, 5126, 2, "MAT4") + ",\n" +
            accessor(5, 5126, 3, "SCALAR", ",\"max\":[1],\"min\":[0]") + ",\n" +
-           accessor(6, 5126, 3, "VEC4") + "]}\n";
+           accessor(6, 5126, 3, "VEC4") +
+           (is_painted ? ",\n" + accessor(7, 5126, 6, "SCALAR") + ",\n" +
+                             accessor(8, 5121, 6, "SCALAR", ",\"normalized\":true")
+                       : "") +
+           "]}\n";
 }
 
 std::string base64(const std::string& bytes) {
@@ -183,15 +217,19 @@ std::string base64(const std::string& bytes) {
     return text;
 }
 
-}  // namespace
+GltfNumbers painted_numbers() {
+    GltfNumbers numbers = strip_numbers();
+    numbers.floats({0.0f, 0.0f, 0.05f, 0.05f, 0.1f, 0.2f});  // 7: largest distances
+    numbers.begin_view();                                    // 8: drives
+    for (int i = 0; i < 6; ++i) append(numbers.bytes, static_cast<std::uint8_t>(40 * i));
+    return numbers;
+}
 
-std::string gltf_file() {
-    const GltfNumbers numbers = strip_numbers();
+std::string gltf_of(const GltfNumbers& numbers) {
     return gltf_json(numbers, "data:application/octet-stream;base64," + base64(numbers.bytes));
 }
 
-std::string glb_file() {
-    GltfNumbers numbers = strip_numbers();
+std::string glb_of(GltfNumbers numbers) {
     std::string json = gltf_json(numbers, "");
     json.resize((json.size() + 3) / 4 * 4, ' ');
     numbers.bytes.resize((numbers.bytes.size() + 3) / 4 * 4);
@@ -203,6 +241,24 @@ std::string glb_file() {
     append(file, static_cast<std::uint32_t>(numbers.bytes.size()));
     file += std::string("BIN\0", 4) + numbers.bytes;
     return file;
+}
+
+}  // namespace
+
+std::string gltf_file() {
+    return gltf_of(strip_numbers());
+}
+
+std::string glb_file() {
+    return glb_of(strip_numbers());
+}
+
+std::string painted_gltf_file() {
+    return gltf_of(painted_numbers());
+}
+
+std::string painted_glb_file() {
+    return glb_of(painted_numbers());
 }
 
 std::string collada_file() {

@@ -6,6 +6,7 @@
 #include "data/core/read_file.h"
 #include "data/files/cache_format.h"
 #include "data/files/mesh_io.h"
+#include "data/files/painted_mesh.h"
 #include "data/files/point_cache_reader.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/solver_factory.h"
@@ -135,6 +136,96 @@ TEST_F(Bake, ARunIsNotResumedWithOtherOptions) {
     options.character.steps = 5;
     EXPECT_TRUE(run(options));
     EXPECT_THROW(run(options), UsageError) << "it is whole";
+}
+
+/// The cape, held at its upper seam and free to leave the skin by 5 cm.
+PaintedMesh painted_cape() {
+    PaintedMesh cape{load_mesh(asset_path("garments/cape.obj")), {}, false};
+    cape.limits.max_distance.setConstant(cape.mesh.vertices.rows(), 0.05);
+    for (Eigen::Index i = 0; i < cape.mesh.vertices.rows(); ++i)
+        if (cape.mesh.vertices(i, 1) > 0.39) cape.limits.max_distance[i] = 0.0;
+    return cape;
+}
+
+TEST_F(Bake, ACharacterThatIsNoSurfaceIsRefusedByItsFile) {
+    BakeOptions options = cape("xpbd-10");
+    options.character.character = model_path("X/Testwuson.X");
+    try {
+        make_bake_scene(options);
+        FAIL() << "it was taken";
+    } catch (const ArgumentError& error) {
+        EXPECT_NE(std::string(error.what()).find("Testwuson.X: edge"), std::string::npos)
+            << error.what();
+    }
+}
+
+TEST_F(Bake, AGarmentThatFallsOffIsToldOnce) {
+    BakeOptions options = cape("xpbd-10");
+    options.character.pin.clear();
+    options.character.settle = 1.0;  // free fall takes it far
+    const BakeScene scene = make_bake_scene(options);
+    const auto stepper = make_solver(options.solver, *scene.cloth, {});
+    std::vector<BakedMesh> meshes = open_caches(scene, options);
+    std::vector<std::string> told;
+    ASSERT_TRUE(bake(scene, *stepper, meshes,
+                     {[](int, int, const std::string&) {}, [] { return false; },
+                      [&](int, const std::string& problem) { told.push_back(problem); }}));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_NE(told[0].find("slid off: give --pin"), std::string::npos) << told[0];
+}
+
+TEST_F(Bake, GoalsThatArePaintedInTheFileHoldTheGarmentNearTheSkin) {
+    BakeOptions options = cape("quasi-newton");
+    const PaintedMesh painted = painted_cape();
+    save_painted_ply(path("cape.ply"), painted.mesh, painted.limits);
+    options.character.garment = path("cape.ply");
+    options.character.pin.clear();
+    const BakeScene scene = make_bake_scene(options);
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_NE(scene.notes[0].find(std::to_string(painted.mesh.vertices.rows()) +
+                                  " of its vertices have a largest distance, 0 a backstop"),
+              std::string::npos)
+        << scene.notes[0];
+    const auto stepper = make_solver(options.solver, *scene.cloth, {});
+    const Garment& garment = scene.cloth->garment();
+    ClothState state = scene.cloth->start();
+    double farthest = 0.0;
+    for (int frame = -scene.cloth->lead_in_frames(); frame < 6; ++frame) {
+        const Boundary boundary = scene.cloth->frame_boundary(frame);
+        const StepReport report = stepper->step(boundary, scene.cloth->frame_time(), state);
+        ASSERT_TRUE(report.finite);
+        const VectorX away = (state.x - boundary.goals.x1).rowwise().norm();
+        if (report.vertices_beyond_goals == 0) {
+            EXPECT_LE((away - garment.goal_limits().max_distance).maxCoeff(), 1e-9) << frame;
+        }
+        EXPECT_LT(report.max_goal_excess, 0.01) << "what skin that bends leaves";
+        farthest = std::max(farthest, away.maxCoeff());
+    }
+    EXPECT_GT(farthest, 0.005) << "it is cloth";
+}
+
+TEST_F(Bake, ColoursAreReadAsGoalsIfAskedForAndNamedIfNot) {
+    BakeOptions options = cape("quasi-newton");
+    const TriMesh mesh = load_mesh(asset_path("garments/cape.obj"));
+    std::string text;
+    for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
+        for (int c = 0; c < 3; ++c) text += (c ? " " : "v ") + std::to_string(mesh.vertices(i, c));
+        text += mesh.vertices(i, 1) > 0.39 ? " 0 1 1\n" : " 0.5 1 1\n";
+    }
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f)
+        for (int c = 0; c < 3; ++c)
+            text += (c ? " " : "f ") + std::to_string(mesh.faces(f, c) + 1) + (c == 2 ? "\n" : "");
+    options.character.garment = write("coloured.obj", text);
+    const BakeScene unread = make_bake_scene(options);
+    EXPECT_FALSE(unread.cloth->garment().has_goals());
+    ASSERT_EQ(unread.notes.size(), 1u);
+    EXPECT_NE(unread.notes[0].find("--goal-colours"), std::string::npos);
+    options.character.goal_colours.emplace().max_distance = 0.3;
+    const BakeScene read = make_bake_scene(options);
+    const VectorX& limits = read.cloth->garment().goal_limits().max_distance;
+    EXPECT_NEAR(limits.maxCoeff(), 0.15, 1e-6);
+    EXPECT_EQ(limits.minCoeff(), 0.0);
+    EXPECT_EQ(read.cloth->frame_boundary(0).goals.x1.rows(), limits.size());
 }
 
 TEST_F(Bake, AStepThatFailsEndsTheRunAndLeavesWhatIsThere) {

@@ -3,6 +3,7 @@
 
 #include "data/body/body_shapes.h"
 #include "data/body/outfit.h"
+#include "data/files/painted_mesh.h"
 #include "demos/bake/character_scene.h"
 #include "demos/compare/arguments.h"
 #include "demos/import_garment/import.h"
@@ -62,6 +63,26 @@ TEST_F(ImportFile, WhatIsWrittenIsAGarmentOfTheProject) {
     std::ifstream file(path("out/thing.import.json"));
     EXPECT_EQ(nlohmann::ordered_json::parse(file), result.json);
     EXPECT_NE(result.text.find("compare --garment " + result.files[0]), std::string::npos);
+}
+
+TEST_F(ImportFile, GoalsThatArePaintedAreCarriedOver) {
+    const TriMesh shirt = worn_garment("tshirt_1000");
+    GoalLimits limits;
+    limits.max_distance = (0.5 * (shirt.vertices.col(1).array() - 0.8)).max(0.0);
+    save_painted_ply(path("shirt.ply"), shirt, limits);
+    const ImportResult result = import_file(options_for("shirt.ply", {"--vertices", "700"}));
+    ASSERT_EQ(result.files.size(), 1u);
+    EXPECT_EQ(result.files[0], path("out/shirt.ply"));
+    EXPECT_NE(result.text.find("goals that are painted on it were carried over"),
+              std::string::npos);
+    const PaintedMesh made = load_painted_mesh(result.files[0]);
+    EXPECT_LT(made.mesh.vertices.rows(), 800);
+    ASSERT_EQ(made.limits.max_distance.size(), made.mesh.vertices.rows());
+    for (Eigen::Index i = 0; i < made.mesh.vertices.rows(); ++i)
+        EXPECT_NEAR(made.limits.max_distance[i],
+                    std::max(0.0, 0.5 * (made.mesh.vertices(i, 1) - 0.8)), 0.01)
+            << i;
+    EXPECT_EQ(load_outfit(result.files[0]).garment.vertex_count(), made.mesh.vertices.rows());
 }
 
 TEST_F(ImportFile, PiecesAreFilesAndAnOutfitFromTheOutside) {

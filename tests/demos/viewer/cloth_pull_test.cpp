@@ -55,6 +55,36 @@ TEST(ViewerPull, DrivesOfThePatchSumToTheStiffness) {
     }
 }
 
+TEST(ViewerPull, AHandDoesNotPullClothBeyondItsOwnGoals) {
+    const Garment sheet = sheet_garment();
+    const int middle = middle_of(sheet);
+    const ClothPull pull(sheet, middle);
+    GoalLimits own;
+    own.max_distance.setConstant(sheet.vertex_count(), 0.03);
+    own.max_distance[0] = 0.0;
+    own.drive_damping.setConstant(sheet.vertex_count(), 2.0);
+    const Points& x = sheet.rest().vertices;
+    const SkinGoals skin = SkinGoals::at(x);
+
+    const GoalLimits limits = pull.limits(own);
+    check(limits, sheet.vertex_count(), "limits");
+    const SkinGoals goals = pull.goals(x, x.row(middle).transpose() + Vec3(0, 0.1, 0), own, skin);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const auto& patch = pull.patch();
+        if (std::find(patch.begin(), patch.end(), i) == patch.end()) {
+            EXPECT_EQ(limits.max_distance[i], own.max_distance[i]) << "free of the hand";
+            EXPECT_EQ(limits.drive_damping[i], 2.0);
+            EXPECT_EQ(goals.x1.row(i), skin.x1.row(i));
+        } else {
+            EXPECT_NEAR((goals.x1.row(i) - x.row(i)).norm(), 0.03, 1e-12) << "up to its limit";
+            EXPECT_GT(limits.drive_stiffness[i], 0.0);
+        }
+    }
+    EXPECT_EQ(pull.goals(x, x.row(middle).transpose() + Vec3(0, 0.01, 0), own, skin).x1.row(middle),
+              x.row(middle) + Eigen::RowVector3d(0, 0.01, 0))
+        << "within its limit";
+}
+
 TEST(ViewerPull, ALayerBelowIsLeftOut) {
     const Garment over = sheet_garment();
     TriMesh mesh = over.rest();
