@@ -1,0 +1,108 @@
+// From a scene to the page: a small garment for two frames.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "data/core/errors.h"
+#include "data/core/read_file.h"
+#include "demos/compare/arguments.h"
+#include "demos/paper_tables/paper_run.h"
+#include "render/replaced_file.h"
+
+namespace cloth::paper_run_test {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Run {
+    PaperOptions options;
+    int measured = 0;  ///< solvers of which a rollout was told about
+
+    explicit Run(const std::string& name) {
+        options.out = ::testing::TempDir() + name;
+        std::filesystem::remove_all(options.out);
+        options.garments = {"tshirt_1000"};
+        options.solvers = {"hood+0", "fast+0", "xpbd-40"};
+        options.frames = 2;
+        options.weights = options.out + "/weights";
+        options.references = options.out + "/parts";
+        std::filesystem::create_directories(options.weights);
+        const std::filesystem::path assets = CLOTH_SOURCE_DIR "/data/assets/weights";
+        std::filesystem::copy_file(assets / "fast.safetensors",
+                                   options.weights + "/fast.safetensors");
+    }
+    ~Run() { std::filesystem::remove_all(options.out); }
+    Run(const Run&) = delete;
+    Run& operator=(const Run&) = delete;
+
+    Json operator()() {
+        measured = 0;
+        run_paper_tables(options, 1, [&](int done, int, const std::string& what) {
+            if (done == 1 && what.find("rollout") != std::string::npos) ++measured;
+        });
+        return Json::parse(read_file(options.out + "/paper_tables.json"));
+    }
+};
+
+}  // namespace
+
+TEST(PaperRun, MeasuresOnceAndSaysWhatIsMissing) {
+    Run run("paper_run");
+    const Json report = run();
+    EXPECT_EQ(run.measured, 2);
+    ASSERT_EQ(report.at("rows").size(), 3u);
+    EXPECT_EQ(report.at("rows")[0].at("missing"), "not trained yet: no hood.safetensors");
+    for (size_t k : {1, 2}) {
+        const Json& row = report.at("rows")[k];
+        EXPECT_EQ(row.at("solver"), run.options.solvers[k]);
+        EXPECT_EQ(row.at("frames"), 2);
+        EXPECT_NEAR(row.at("fps").get<double>() * row.at("ms_median").get<double>(), 1e3, 0.1);
+        EXPECT_GT(row.at("gap_median"), 0.0);
+        EXPECT_GT(row.at("fine_rmse_mm"), 0.0);
+        EXPECT_LT(row.at("fine_rmse_mm"), 20.0) << "after two frames";
+        const Json& loss = row.at("loss");
+        double sum = 0.0;
+        for (const char* term : {"strain", "bending", "contact", "gravity", "inertia", "friction"})
+            sum += loss.at(term).get<double>();
+        EXPECT_NEAR(sum, loss.at("total").get<double>(), 1e-4 * std::abs(sum));
+        EXPECT_GT(loss.at("strain"), 0.0);
+        EXPECT_TRUE(row.at("failure").is_null());
+    }
+    EXPECT_GT(report.at("rows")[1].at("network_mb"), 1.0);
+    EXPECT_TRUE(report.at("rows")[2].at("network_mb").is_null());
+    const std::string page = read_file(run.options.out + "/paper_tables.md");
+    EXPECT_NE(page.find("## Table 2: tshirt_1000"), std::string::npos);
+
+    EXPECT_EQ(run().at("rows"), report.at("rows"));
+    EXPECT_EQ(run.measured, 0) << "the rows are kept";
+    run.options.again = true;
+    run.options.solvers = {"xpbd-40"};
+    const Json again = run();
+    EXPECT_EQ(again.at("rows").size(), 1u);
+    EXPECT_EQ(again.at("rows")[0].at("loss"), report.at("rows")[2].at("loss")) << "deterministic";
+}
+
+TEST(PaperRun, WhatCannotBeUsedIsKnownBeforeAnythingIsMeasured) {
+    Run run("paper_run_wrong");
+    run.options.solvers = {"xpbd-40", "hoood+0"};
+    EXPECT_THROW(run(), UsageError);
+    run.options.solvers = {"xpbd-40", "quasi-newton-x"};
+    EXPECT_THROW(run(), UsageError);
+    run.options.neighbours = run.options.out + "/neighbours.json";
+    for (const char* text : {"{", "{\"series\": \"states\", \"rows\": []}",
+                             "{\"series\": \"neighbours\", \"rows\": [{\"name\": \"many\"}]}"}) {
+        write_text_file(run.options.neighbours, text);
+        try {
+            run();
+            FAIL() << text;
+        } catch (const LoadError& error) {
+            EXPECT_NE(std::string(error.what()).find("train_series --series neighbours"),
+                      std::string::npos);
+        }
+    }
+    EXPECT_EQ(run.measured, 0);
+}
+
+}  // namespace cloth::paper_run_test
