@@ -16,11 +16,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Run {
+struct SmallRun {
     PaperOptions options;
     int measured = 0;  ///< solvers of which a rollout was told about
 
-    explicit Run(const std::string& name) {
+    explicit SmallRun(const std::string& name) {
         options.out = ::testing::TempDir() + name;
         std::filesystem::remove_all(options.out);
         options.garments = {"tshirt_1000"};
@@ -33,9 +33,9 @@ struct Run {
         std::filesystem::copy_file(assets / "fast.safetensors",
                                    options.weights + "/fast.safetensors");
     }
-    ~Run() { std::filesystem::remove_all(options.out); }
-    Run(const Run&) = delete;
-    Run& operator=(const Run&) = delete;
+    ~SmallRun() { std::filesystem::remove_all(options.out); }
+    SmallRun(const SmallRun&) = delete;
+    SmallRun& operator=(const SmallRun&) = delete;
 
     Json operator()() {
         measured = 0;
@@ -49,7 +49,7 @@ struct Run {
 }  // namespace
 
 TEST(PaperRun, MeasuresOnceAndSaysWhatIsMissing) {
-    Run run("paper_run");
+    SmallRun run("paper_run");
     const Json report = run();
     EXPECT_EQ(run.measured, 2);
     ASSERT_EQ(report.at("rows").size(), 3u);
@@ -85,7 +85,7 @@ TEST(PaperRun, MeasuresOnceAndSaysWhatIsMissing) {
 }
 
 TEST(PaperRun, WhatCannotBeUsedIsKnownBeforeAnythingIsMeasured) {
-    Run run("paper_run_wrong");
+    SmallRun run("paper_run_wrong");
     run.options.solvers = {"xpbd-40", "hoood+0"};
     EXPECT_THROW(run(), UsageError);
     run.options.solvers = {"xpbd-40", "quasi-newton-x"};
