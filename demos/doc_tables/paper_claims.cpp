@@ -72,8 +72,21 @@ Compared training_ratio(const std::string& network, const std::string& other,
             ours(network) / ours(other), false};
 }
 
+/// The same of an evaluation of the network, without the rest of a step.
+std::vector<Compared> network_speeds(const PaperData& data, const std::string& network,
+                                     const std::string& other) {
+    std::vector<Compared> ratios =
+        inference_ratios(data, network, other, &PaperInference::fps, "/network_ms", true);
+    for (Compared& one : ratios) one.ours = 1.0 / one.ours;
+    return ratios;
+}
+
 void add_inference(const PaperData& data, MarkdownTable& table) {
     using Paper = PaperInference;
+    for (const char* network : {"sampling", "reduction", "fast"})
+        table.rows.push_back(claim_row(
+            std::string(network) + " over baseline: evaluations of the network per second",
+            network_speeds(data, network, "baseline")));
     for (const char* network : {"sampling", "reduction", "fast"})
         table.rows.push_back(
             claim_row(std::string(network) + " over baseline: frames per second",
@@ -89,6 +102,8 @@ void add_inference(const PaperData& data, MarkdownTable& table) {
         table.rows.push_back(claim_row(
             std::string(network) + " over baseline: loss",
             inference_ratios(data, network, "baseline", &Paper::loss, "/loss/total", false)));
+    table.rows.push_back(claim_row("HOOD + ours over HOOD: evaluations of the network per second",
+                                   network_speeds(data, "hood_fast", "hood")));
     table.rows.push_back(
         claim_row("HOOD + ours over HOOD: frames per second",
                   inference_ratios(data, "hood_fast", "hood", &Paper::fps, "/fps", true)));
@@ -144,17 +159,17 @@ void add_figure_6(const PaperData& data, MarkdownTable& table) {
     double most = 1.0;
     std::string which = "all";
     for (const char* term : {"bending", "contact", "inertia", "friction"}) {
-        const double other = std::max(ratio(term), 1.0 / ratio(term));
+        const double other = ratio(term);
         if (std::isnan(other)) most = other;
         if (!(other > most)) continue;
         most = other;
         which = term;
     }
-    table.rows.push_back({"fast over baseline: other terms are nearly the same (figure 6)",
-                          "no figure; taken as 1.1 times at most",
-                          std::isnan(most) ? decimals(most, 2)
-                                           : "up to " + significant(most, 2) + " times, " + which,
-                          known_verdict(most, most <= 1.1)});
+    table.rows.push_back(
+        {"fast over baseline: other terms are hardly higher (figure 6)",
+         "no figure; taken as 1.1 times at most",
+         std::isnan(most) ? decimals(most, 2) : significant(most, 2) + " times at most: " + which,
+         known_verdict(most, most <= 1.1)});
 }
 
 void add_figure_7(const PaperData& data, MarkdownTable& table) {

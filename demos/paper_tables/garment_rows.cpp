@@ -5,7 +5,7 @@
 
 #include "demos/compare/json_numbers.h"
 #include "demos/compare/statistics.h"
-#include "demos/paper_tables/network_memory.h"
+#include "demos/paper_tables/network_cost.h"
 #include "demos/provenance/provenance.h"
 #include "demos/speed_error/contest.h"
 #include "demos/speed_error/reference_cache.h"
@@ -75,7 +75,7 @@ ordered_json figures_json(const SolverRow& row, const std::vector<EnergyTerms>& 
     json["ms_median"] = rounded_number(row.ms_median);
     json["ms_p95"] = rounded_number(row.ms_p95);
     json["memory_mb"] = rounded_number(row.peak_memory_mb);
-    json["network_mb"] = nullptr;
+    json["network_mb"] = json["network_ms"] = nullptr;
     json["loss"] = loss_json(terms);
     json["gap_median"] = rounded_number(row.gap_median);
     json["rollout_rmse_mm"] = rounded_number(row.rollout_rmse_mm);
@@ -178,8 +178,11 @@ void measure_garment(const GarmentPlan& plan, const GarmentRowSettings& settings
         ordered_json row = begun_row(plan, left[k], settings);
         row["vertices"] = scene->garment().vertex_count();
         row.update(measure_solver(measured, left[k], settings.solver, detailed, count));
-        if (solver_family(left[k]).kind == SolverFamily::Kind::network)
-            row["network_mb"] = rounded_number(network_memory_mb(file, *scene, start));
+        if (solver_family(left[k]).kind == SolverFamily::Kind::network) {
+            const NetworkCost cost = network_cost(file, *scene, start, settings.solver.threads);
+            row["network_mb"] = rounded_number(cost.memory_mb);
+            row["network_ms"] = rounded_number(cost.ms);
+        }
         report.put("rows", row);
     }
 }

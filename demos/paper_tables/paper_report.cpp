@@ -81,6 +81,19 @@ void PaperReport::put(const std::string& list, const Json& row) {
     save();
 }
 
+void PaperReport::arrange(const std::string& list, const std::vector<Json>& places) {
+    Json arranged = Json::array(), others = m_document.at(list);
+    for (const Json& place : places) {
+        const auto at = std::find_if(others.begin(), others.end(),
+                                     [&](const Json& row) { return same_place(row, place); });
+        if (at == others.end()) continue;
+        arranged.push_back(*at);
+        others.erase(at);
+    }
+    for (const Json& row : others) arranged.push_back(row);
+    m_document[list] = arranged;
+}
+
 void PaperReport::set(const std::string& member, const Json& value) {
     m_document[member] = value;
     save();

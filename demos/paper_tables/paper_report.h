@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 namespace cloth {
 
@@ -27,15 +28,21 @@ class PaperReport {
     /// and network.
     void put(const std::string& list, const Json& row);
 
+    /// Brings the rows of a list into the order of these places, {garment, solver} each; others
+    /// follow. It does not save.
+    void arrange(const std::string& list, const std::vector<Json>& places);
+
     /// Sets a member of the document that is no list of rows, and saves.
     void set(const std::string& member, const Json& value);
+
+    /// Writes the file. @throws LoadError if that is not possible
+    void save() const;
 
     const Json& document() const { return m_document; }
     const std::string& path() const { return m_path; }
 
  private:
     void keep_rows_of(const Json& old);
-    void save() const;
 
     std::string m_path;
     Json m_document;

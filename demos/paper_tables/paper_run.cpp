@@ -45,6 +45,16 @@ ordered_json provenance(const PaperOptions& options, int threads) {
     return json;
 }
 
+/// Rows in the order in which tables show them, whatever was measured first.
+void arrange_rows(const PaperOptions& options, PaperReport& report) {
+    std::vector<ordered_json> places;
+    for (const auto& plans : {paper_plan({}), paper_plan(options)})
+        for (const GarmentPlan& plan : plans)
+            for (const std::string& solver : plan.solvers)
+                places.push_back({{"garment", plan.garment}, {"solver", solver}});
+    report.arrange("rows", places);
+}
+
 void write_figures(const std::string& folder, const PaperReport& report) {
     const ordered_json& document = report.document();
     write_text_file(folder + "/paper_tables.md", paper_page(report.path(), document));
@@ -69,6 +79,7 @@ void run_paper_tables(const PaperOptions& options, int threads, const ProgressFu
     rows.references = options.references;
     for (const GarmentPlan& garment : plan) {
         measure_garment(garment, rows, report, progress);
+        arrange_rows(options, report);
         write_figures(options.out, report);
     }
     if (!options.train.empty()) {
@@ -77,6 +88,7 @@ void run_paper_tables(const PaperOptions& options, int threads, const ProgressFu
                                               options.out + "/trainings"};
         measure_trainings(paper_networks(), training, report, progress);
     }
+    report.save();
     write_figures(options.out, report);
 }
 

@@ -74,6 +74,16 @@ TEST_F(Report, BeginsAfreshIfAskedTo) {
     EXPECT_NO_THROW(PaperReport(m_folder, 1, true)) << "what is damaged is not read";
 }
 
+TEST_F(Report, RowsAreArrangedAndNoneIsLost) {
+    PaperReport report(m_folder, 1, false);
+    for (const char* solver : {"c", "a", "d", "b"}) report.put("rows", row_of(solver, "k", 1));
+    report.arrange("rows", {row_of("a", "", 0), row_of("none", "", 0), row_of("b", "", 0)});
+    std::string order;
+    for (const Json& row : report.document().at("rows"))
+        order += row.at("solver").get<std::string>();
+    EXPECT_EQ(order, "abcd");
+}
+
 TEST_F(Report, RowsOfAnotherCommitAreLeftOut) {
     PaperReport(m_folder, 1, false).put("rows", row_of("a", "k", 1));
     Json saved = Json::parse(read_file(file()));
