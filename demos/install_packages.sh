@@ -20,7 +20,7 @@ tests=(libcgal-dev libgtest-dev libbenchmark-dev "${viewer[@]}" xvfb xdotool)
 # clang only recommends the sanitizers' runtime
 checks=(clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 libomp-14-dev gcovr)
 # without OpenBLAS LibTorch multiplies matrices by the reference BLAS, ten times slower
-training=(libtorch-dev libopenblas0)
+training=(libtorch-dev libopenblas0 libgloo-dev)
 case "${1:-all}" in
   demo) ;;
   viewer) packages+=("${viewer[@]}") ;;

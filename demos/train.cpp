@@ -14,7 +14,9 @@
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/files/garment_assets.h"
+#include "demos/local_processes.h"
 #include "demos/training_program.h"
+#include "gnn/train/process_group.h"
 #include "gnn/train/trainer.h"
 
 namespace {
@@ -23,7 +25,8 @@ struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "kicks", loss;
     int width = 32, levels = 2, nice = 0;
-    std::optional<int> steps, sampled_edges;
+    std::optional<int> steps, sampled_edges, batch;
+    int processes = 1;
     bool force_features = true, resume = false;
     std::map<std::string, double> recipe_values;  ///< of recipe_options
 };
@@ -98,7 +101,12 @@ Options parse(int count, char** arguments) {
     add("--weights", settings.start_weights, "FILE", "start from these weights");
     add("--minutes", settings.minutes, "M", "wall time of the training");
     add("--iterations", settings.iterations, "N", "end after so many iterations");
-    add("--pool", settings.pool, "N", "scenes trained on in turn (40)");
+    add("--batch", options.batch, "N",
+        "scenes of an iteration, a multiple of the number of processes (that number)");
+    add("--processes", options.processes, "N",
+        "train with so many on this machine, 1 to 256; on several machines start each with RANK, "
+        "WORLD_SIZE, MASTER_ADDR and MASTER_PORT instead (1)");
+    add("--pool", settings.pool, "N", "scenes trained on in turn, for each of the batch (40)");
     add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
     add("--garment", garment, "NAME",
         "train on this garment alone: a name of data/assets/garments, or a file of yours");
@@ -169,8 +177,9 @@ cloth::ModelConfig model_config(const Options& options) {
     return config;
 }
 
-cloth::TrainerSettings make_settings(const Options& options) {
+cloth::TrainerSettings make_settings(const Options& options, int processes) {
     cloth::TrainerSettings settings = options.settings;
+    settings.batch = options.batch.value_or(processes);
     settings.model = model_config(options);
     settings.model.width = options.width;
     settings.model.features.force_features = options.force_features;
@@ -184,14 +193,36 @@ cloth::TrainerSettings make_settings(const Options& options) {
     return settings;
 }
 
+/// True: this process only watches over those that train.
+bool is_launcher(const Options& options) {
+    cloth::check_range("--processes", options.processes, 1, 256);
+    if (options.processes == 1) return false;
+    const char* const size = std::getenv("WORLD_SIZE");
+    if (size != nullptr && size != std::to_string(options.processes))
+        throw cloth::ArgumentError(
+            "--processes",
+            "contradicts WORLD_SIZE of the environment, which is " + std::string(size),
+            "give --processes on one machine, or WORLD_SIZE on several, not both");
+    return size == nullptr;
+}
+
+void train(const Options& options) {
+    const cloth::ProcessGroup group = cloth::ProcessGroup::from_environment();
+    const cloth::TrainingProgram program{"train", options.settings.out, options.nice,
+                                         options.resume, group.is_first()};
+    cloth::run_training(
+        program, [&] { return cloth::Trainer(make_settings(options, group.size()), group); });
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
     try {
         const Options options = parse(count, arguments);
-        const cloth::TrainingProgram program{"train", options.settings.out, options.nice,
-                                             options.resume};
-        cloth::run_training(program, [&] { return cloth::Trainer(make_settings(options)); });
+        if (is_launcher(options))
+            return cloth::run_local_processes(options.processes, arguments,
+                                              cloth::ProcessGroup::free_port());
+        train(options);
     } catch (const std::exception& error) {
         std::cerr << "train: " << error.what() << "\n";
         return 1;

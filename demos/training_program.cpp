@@ -20,7 +20,8 @@ static void on_signal(int signal) {
 }
 
 void begin_training(const TrainingProgram& program) {
-    if (!program.resume && std::filesystem::exists(program.out + "/checkpoint.pt"))
+    if (program.writes && !program.resume &&
+        std::filesystem::exists(program.out + "/checkpoint.pt"))
         throw ArgumentError(program.out, "has a training already",
                             "give --resume to go on with it, or another --out");
     check_range("--nice", program.nice, 0, 19);

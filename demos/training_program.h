@@ -12,6 +12,7 @@ struct TrainingProgram {
     std::string out;      ///< folder of the training
     int nice = 0;         ///< priority, 0 to 19: the larger, the more it gives way
     bool resume = false;  ///< goes on with what is in the folder
+    bool writes = true;   ///< false: another process writes the files of this training, and speaks
 };
 
 /// Lowers the priority.
@@ -29,10 +30,11 @@ template <typename Make>
 void run_training(const TrainingProgram& program, const Make& make) {
     begin_training(program);
     auto trainer = make();
-    if (program.resume && !trainer.resume())
+    if (program.resume && !trainer.resume() && program.writes)
         std::cerr << program.name << ": no checkpoint in " << program.out << ", starting anew\n";
     const std::atomic<bool>& stop = stop_on_signals();
     trainer.run(stop);
+    if (!program.writes) return;
     if (stop) std::cerr << program.name << ": stopped; --resume goes on\n";
     std::cerr << program.name << ": weights in " << program.out << "/weights.safetensors\n";
 }

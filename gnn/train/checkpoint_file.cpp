@@ -1,6 +1,8 @@
 #include "gnn/train/checkpoint_file.h"
 
 #include <filesystem>
+#include <fstream>
+#include <sstream>
 
 #include "data/core/errors.h"
 
@@ -17,13 +19,21 @@ void save_checkpoint(torch::serialize::OutputArchive& archive, const std::string
 }
 
 bool load_checkpoint(
-    const std::string& folder, const c10::Device& device,
+    const std::string& folder, const ProcessGroup& group, const c10::Device& device,
     const std::function<void(torch::serialize::InputArchive&, const std::string&)>& load) {
     const std::string file = checkpoint_of(folder);
-    if (!std::filesystem::exists(file)) return false;
+    std::ostringstream bytes;
+    if (group.is_first() && std::filesystem::exists(file)) {
+        std::ifstream stream(file, std::ios::binary);
+        if (!(bytes << stream.rdbuf()))
+            throw LoadError(file, "", "cannot be read, or is empty",
+                            "delete the file to start training again");
+    }
+    std::istringstream content(group.from_first(bytes.str()));
+    if (content.str().empty()) return false;
     try {
         torch::serialize::InputArchive archive;
-        archive.load_from(file, device);
+        archive.load_from(content, device);
         load(archive, file);
     } catch (const c10::Error& error) {
         throw LoadError(file, "", error.what_without_backtrace(),

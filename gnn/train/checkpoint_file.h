@@ -5,16 +5,19 @@
 #include <functional>
 #include <string>
 
+#include "gnn/train/process_group.h"
+
 namespace cloth {
 
 /// Replaces the checkpoint of a folder: written under a temporary name, then renamed.
 void save_checkpoint(torch::serialize::OutputArchive& archive, const std::string& folder);
 
-/// Reads the checkpoint of a folder with `load(archive, file)`.
+/// Reads the checkpoint of a folder with `load(archive, file)`. The first process reads the file
+/// for all: the others may be on machines that have none.
 /// @return  false: there is none
-/// @throws LoadError if LibTorch cannot read it; what `load` throws
+/// @throws LoadError if it cannot be read; what `load` throws
 bool load_checkpoint(
-    const std::string& folder, const c10::Device& device,
+    const std::string& folder, const ProcessGroup& group, const c10::Device& device,
     const std::function<void(torch::serialize::InputArchive&, const std::string&)>& load);
 
 /// @param own  the settings of this training, as the entry "settings" of its checkpoints has them

@@ -338,7 +338,7 @@ void SkinningTrainer::save() {
 }
 
 bool SkinningTrainer::resume() {
-    return load_checkpoint(m_settings.out, torch::kCPU,
+    return load_checkpoint(m_settings.out, ProcessGroup(), torch::kCPU,
                            [&](auto& archive, const std::string& file) { load(archive, file); });
 }
 

@@ -1,5 +1,6 @@
 #include "gnn/train/trainer.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -20,7 +21,7 @@ static double cpu_seconds() {
     return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-static TrainerSettings checked(TrainerSettings settings) {
+static TrainerSettings checked(TrainerSettings settings, const ProcessGroup& group) {
     if (settings.iterations <= 0 && settings.minutes <= 0.0)
         throw ArgumentError("training", "has no end", "give iterations or minutes");
     if (settings.device != "cpu" && settings.device != "cuda")
@@ -33,6 +34,11 @@ static TrainerSettings checked(TrainerSettings settings) {
     check("iterations", static_cast<double>(settings.iterations), 0.0, 1e9);
     check("minutes", settings.minutes, 0.0, 1e6);
     check("threads", settings.threads, 1, 256);
+    check("batch", settings.batch, 1, 4096);
+    if (settings.batch % group.size() != 0)
+        throw ArgumentError("batch of " + std::to_string(settings.batch),
+                            "cannot be shared by " + std::to_string(group.size()) + " processes",
+                            "use a multiple of their number");
     check("pool", settings.pool, 1, 1000);
     check("report_every", settings.report_every, 1, 1e6);
     check("validate_every", settings.validate_every, 0.0, 1e4);
@@ -52,17 +58,25 @@ static TrainerSettings checked(TrainerSettings settings) {
     return settings;
 }
 
-Trainer::Trainer(TrainerSettings settings)
-    : m_settings(checked(std::move(settings))),
+Trainer::Lane::Lane(int index, const SceneFactory& factory, const TrainerSettings& settings)
+    : number(index),
+      // 2^64 over the golden ratio: seeds of lanes are far from those of trainings
+      pool(factory, settings.pool,
+           settings.seed + 0x9E3779B97F4A7C15u * static_cast<std::uint64_t>(index)) {
+}
+
+Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
+    : m_settings(checked(std::move(settings), group)),
+      m_group(std::move(group)),
       m_device(m_settings.device),
       m_network(m_settings.model, m_device, m_settings.seed),
       m_adam(m_network.parameters().count(), m_device),
-      m_random(m_settings.seed),
+      m_sum(torch::zeros({m_network.parameters().count() + 1}, m_device)),
       m_factory(m_settings.model, m_settings.scenes, m_settings.seed),
-      m_node(node_layout(m_settings.model.features.force_features)),
-      m_edge(edge_layout()),
-      m_world(world_layout()),
-      m_body(body_layout()) {
+      m_own_statistics(m_settings.model),
+      m_statistics(m_settings.model) {
+    for (int k = m_group.rank(); k < m_settings.batch; k += m_group.size())
+        m_lanes.emplace_back(k, m_factory, m_settings);
     if (!m_settings.start_weights.empty())
         m_network.import_weights(Weights::load(m_settings.start_weights));
 }
@@ -81,143 +95,175 @@ bool Trainer::is_done() const {
     return counted || timed;
 }
 
-void Trainer::replace(size_t slot) {
-    const double weight = m_settings.recipe.contact_weight(progress());
-    m_pool[slot] = m_factory.make(m_random.bits());
-    m_pool[slot]->warm_up(m_settings.recipe.heal_iterations, weight);
+bool Trainer::is_filled() const {
+    return std::none_of(m_lanes.begin(), m_lanes.end(),
+                        [](const Lane& lane) { return lane.pool.empty(); });
 }
 
-void Trainer::fill_pool(const std::atomic<bool>& stop) {
-    m_pool.resize(static_cast<size_t>(m_settings.pool));
-    for (size_t slot = 0; slot < m_pool.size(); ++slot) {
-        if (stop) return m_pool.clear();
-        replace(slot);
-        // Ages are spread out, or all scenes would be replaced at the same time.
-        m_pool[slot]->age = m_random.below(m_pool[slot]->parts().life / 2 + 1);
-        m_pool[slot]->prepare(m_settings.recipe.contact_weight(0.0));
-        observe(*m_pool[slot]);
-        std::fprintf(stderr, "\rmaking scenes %zu/%zu", slot + 1, m_pool.size());
-    }
-    std::fprintf(stderr, "\n");
+void Trainer::fill_pools(const std::atomic<bool>& stop) {
+    int made = 0;
+    const auto count = [&](const TrainingScene& scene) {
+        m_own_statistics.add(scene.features());
+        if (m_group.is_first())
+            std::fprintf(stderr, "\rmaking scenes %d/%zu", ++made,
+                         m_lanes.size() * static_cast<size_t>(m_settings.pool));
+    };
+    for (Lane& lane : m_lanes) lane.pool.fill(m_settings.recipe, stop, count);
+    if (m_group.is_first()) std::fprintf(stderr, "\n");
+    share_statistics();
 }
 
-void Trainer::observe(const TrainingScene& scene) {
+void Trainer::share_statistics() {
     if (!m_settings.start_weights.empty()) return;
-    const Features& features = scene.features();
-    m_node.add(features.node);
-    m_edge.add(features.edge);
-    m_world.add(features.world, &features.world_mask);
-    m_body.add(features.body, &features.world_mask);
-    m_network.set_statistics(
-        {m_node.statistics(), m_edge.statistics(), m_world.statistics(), m_body.statistics()});
+    m_statistics = m_own_statistics;
+    m_statistics.sum(m_group);
+    m_network.set_statistics(m_statistics.statistics());
 }
 
-void Trainer::add_noise(ClothState& state) {
-    const double sigma = m_settings.recipe.noise;
+static void add_noise(ClothState& state, double sigma, double dt, SceneRandom& random) {
     if (sigma == 0.0) return;
     // x_t and x_{t-1} are disturbed independently, so the velocity changes with both.
     for (Eigen::Index i = 0; i < state.x.rows(); ++i)
         for (int k = 0; k < 3; ++k) {
-            const double now = sigma * m_random.normal(), before = sigma * m_random.normal();
+            const double now = sigma * random.normal(), before = sigma * random.normal();
             state.x(i, k) += now;
-            state.v(i, k) += (now - before) / m_settings.model.dt;
+            state.v(i, k) += (now - before) / dt;
         }
 }
 
-bool Trainer::train_on(TrainingScene& scene, Points& prediction, Points& target) {
+void Trainer::begin(Lane& lane) {
+    lane.scene = &lane.pool.draw();
+    lane.kept = lane.scene->state;
+    lane.kept_age = lane.scene->age;
+    lane.sound = true;
+    add_noise(lane.scene->state, m_settings.recipe.noise, m_settings.model.dt, lane.pool.random());
+}
+
+void Trainer::prepare(Lane& lane) {
+    const double start = cpu_seconds();
+    lane.scene->prepare(m_settings.recipe.contact_weight(progress()));
+    m_sums.prepare_seconds += cpu_seconds() - start;
+    if (m_iteration < m_settings.freeze_statistics) m_own_statistics.add(lane.scene->features());
+}
+
+/// Leaves the gradient of the lane's loss in that of the parameters. False: it is not finite.
+bool Trainer::differentiate(Lane& lane) {
     const Recipe& recipe = m_settings.recipe;
+    TrainingScene& scene = *lane.scene;
     double start = cpu_seconds();
     m_network.parameters().gradient().zero_();
     const Tensor output = m_network.forward(scene.graph(), scene.features());
-    prediction = to_positions(scene, output);
-    if (!prediction.allFinite()) return false;
+    lane.prediction = to_positions(scene, output);
+    if (!lane.prediction.allFinite()) return false;
     const Features& features = scene.features();
-    LossProblem problem{
-        &scene.potential(), &scene.laplacian(),    &scene.boundary(), &features.base, &target,
-        features.scale,     recipe.position_weight};
+    LossProblem problem{&scene.potential(),    &scene.laplacian(), &scene.boundary(),
+                        &features.base,        &lane.target,       features.scale,
+                        recipe.position_weight};
     m_sums.network_seconds += cpu_seconds() - start;
     start = cpu_seconds();
     const bool from_base =
-        scene.potential().value(features.base) <= scene.potential().value(prediction);
-    target = from_base ? features.base : prediction;
-    scene.refine(target, recipe.target_iterations);
-    Points judged = prediction;
+        scene.potential().value(features.base) <= scene.potential().value(lane.prediction);
+    lane.target = from_base ? features.base : lane.prediction;
+    scene.refine(lane.target, recipe.target_iterations);
+    Points judged = lane.prediction;
     if (recipe.loss_iterations > 0) scene.refine(judged, recipe.loss_iterations);
     m_sums.solver_seconds += cpu_seconds() - start;
-    evaluate_loss(recipe.loss, problem, judged, m_loss);
-    if (!std::isfinite(m_loss.value) || !m_loss.gradient.allFinite()) return false;
-    const MatrixF gradient = (features.scale * m_loss.gradient).cast<float>();
+    evaluate_loss(recipe.loss, problem, judged, lane.loss);
+    if (!std::isfinite(lane.loss.value) || !lane.loss.gradient.allFinite()) return false;
+    const MatrixF gradient = (features.scale * lane.loss.gradient).cast<float>();
     const Tensor seed =
         torch::from_blob(const_cast<float*>(gradient.data()), {gradient.rows(), 3}, torch::kFloat32)
             .to(m_device);
     start = cpu_seconds();
     output.backward(seed);
-    const bool stepped =
-        m_adam.step(m_network.parameters().flat(), m_network.parameters().gradient(),
-                    recipe.learning_rate(m_iteration, progress()), recipe.clip_norm);
+    const double norm = m_network.parameters().gradient().norm().item<double>();
     m_sums.network_seconds += cpu_seconds() - start;
-    return stepped;
+    return std::isfinite(norm);
 }
 
-bool Trainer::move_on(TrainingScene& scene, const Points& prediction, const Points& target) {
+/// A step along the mean gradient of all sound lanes, of all processes.
+void Trainer::step_together() {
+    Parameters& parameters = m_network.parameters();
+    m_sum.zero_();
+    for (Lane& lane : m_lanes) {
+        if (lane.sound) lane.sound = differentiate(lane);
+        if (!lane.sound) continue;
+        m_sum.narrow(0, 0, parameters.count()).add_(parameters.gradient());
+        m_sum.narrow(0, parameters.count(), 1).add_(1.0);
+    }
+    m_group.sum(m_sum);
+    const double sound = m_sum[parameters.count()].item<double>();
+    if (sound == 0.0) return;
+    const double start = cpu_seconds();
+    parameters.gradient().copy_(m_sum.narrow(0, 0, parameters.count())).div_(sound);
+    m_adam.step(parameters.flat(), parameters.gradient(),
+                m_settings.recipe.learning_rate(m_iteration, progress()),
+                m_settings.recipe.clip_norm);
+    m_sums.network_seconds += cpu_seconds() - start;
+}
+
+bool Trainer::move_on(Lane& lane) {
     const Recipe& recipe = m_settings.recipe;
-    if (m_random.chance(recipe.heal_share(progress()))) return scene.advance(target);
-    if (m_random.chance(1.0 - recipe.own_refined)) return scene.advance(prediction);
-    Points refined = prediction;  // what network and iterations reach in use
-    scene.refine(refined, recipe.own_iterations);
-    return scene.advance(refined);
+    SceneRandom& random = lane.pool.random();
+    if (random.chance(recipe.heal_share(progress()))) return lane.scene->advance(lane.target);
+    if (random.chance(1.0 - recipe.own_refined)) return lane.scene->advance(lane.prediction);
+    Points refined = lane.prediction;  // what network and iterations reach in use
+    lane.scene->refine(refined, recipe.own_iterations);
+    return lane.scene->advance(refined);
 }
 
-void Trainer::kick_some(TrainingScene& scene) {
+void Trainer::kick_some(Lane& lane) {
     const KickSettings& kicks = m_settings.recipe.kicks;
-    if (kicks.share == 0.0 || !m_random.chance(kicks.share)) return;
-    kick(scene.garment(), kicks, m_random, scene.state);
+    if (kicks.share == 0.0 || !lane.pool.random().chance(kicks.share)) return;
+    kick(lane.scene->garment(), kicks, lane.pool.random(), lane.scene->state);
     ++m_sums.kicks;
 }
 
-double Trainer::iterate() {
-    if (m_pool.empty()) fill_pool(std::atomic<bool>{false});
+void Trainer::end(Lane& lane) {
     const Recipe& recipe = m_settings.recipe;
-    const size_t slot = static_cast<size_t>(m_random.below(m_settings.pool));
-    TrainingScene& scene = *m_pool[slot];
-    const double weight = recipe.contact_weight(progress());
-    const ClothState kept = scene.state;
-    const int kept_age = scene.age;
-    bool sound = true;
-    Points prediction, target;
-    add_noise(scene.state);
-    for (int k = 0; k < recipe.rollout(m_iteration) && sound; ++k) {
-        if (k > 0) sound = scene.advance(prediction);
-        if (!sound) break;
-        const double start = cpu_seconds();
-        scene.prepare(weight);
-        m_sums.prepare_seconds += cpu_seconds() - start;
-        if (m_iteration < m_settings.freeze_statistics) observe(scene);
-        sound = train_on(scene, prediction, target);
-    }
+    TrainingScene& scene = *lane.scene;
     if (recipe.noise > 0.0) {  // the scene itself goes on as the solver moves it, without noise
-        scene.state = kept;
-        scene.age = kept_age;
-        scene.prepare(weight);
-        target = scene.features().base;
-        scene.refine(target, recipe.heal_iterations);
-        sound = scene.advance(target);
+        scene.state = lane.kept;
+        scene.age = lane.kept_age;
+        scene.prepare(recipe.contact_weight(progress()));
+        lane.target = scene.features().base;
+        scene.refine(lane.target, recipe.heal_iterations);
+        lane.sound = scene.advance(lane.target);
     } else {
-        sound = sound && move_on(scene, prediction, target);
+        lane.sound = lane.sound && move_on(lane);
     }
-    if (sound) kick_some(scene);
-    m_sums.loss += m_loss.value;
-    m_sums.gaps.push_back(m_loss.gap);
-    m_sums.errors.push_back(m_loss.error);
+    if (lane.sound) kick_some(lane);
+    m_sums.loss += lane.loss.value;
+    m_sums.gaps.push_back(lane.loss.gap);
+    m_sums.errors.push_back(lane.loss.error);
     ++m_sums.count;
-    if (m_sums.count % 10 == 1 && prediction.allFinite())
-        m_sums.add(scene.potential().terms(prediction));
-    if (!sound || scene.age > scene.parts().life) {
-        m_sums.resets += sound ? 0 : 1;
-        replace(slot);
+    if (m_sums.count % 10 == 1 && lane.prediction.allFinite())
+        m_sums.add(scene.potential().terms(lane.prediction));
+    if (!lane.sound || scene.age > scene.parts().life) {
+        m_sums.resets += lane.sound ? 0 : 1;
+        lane.pool.replace_drawn(recipe, progress());
+    }
+}
+
+double Trainer::iterate() {
+    if (!is_filled()) fill_pools(std::atomic<bool>{false});
+    for (Lane& lane : m_lanes) begin(lane);
+    const int steps = m_settings.recipe.rollout(m_iteration);
+    for (int k = 0; k < steps; ++k) {
+        for (Lane& lane : m_lanes) {
+            if (k > 0 && lane.sound) lane.sound = lane.scene->advance(lane.prediction);
+            if (lane.sound) prepare(lane);
+        }
+        if (m_iteration < m_settings.freeze_statistics) share_statistics();
+        step_together();
+    }
+    double loss = 0.0;
+    for (Lane& lane : m_lanes) {
+        end(lane);
+        loss += lane.loss.value;
     }
     ++m_iteration;
-    return m_loss.value;
+    return loss / static_cast<double>(m_lanes.size());
 }
 
 }  // namespace cloth

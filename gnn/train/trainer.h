@@ -8,9 +8,11 @@
 
 #include "gnn/train/network.h"
 #include "gnn/train/optimizer.h"
+#include "gnn/train/process_group.h"
 #include "gnn/train/recipe.h"
 #include "gnn/train/rollout_validation.h"
-#include "gnn/train/scene_random.h"
+#include "gnn/train/scene_pool.h"
+#include "gnn/train/scene_statistics.h"
 #include "gnn/train/training_sums.h"
 #include "gnn/train/training_worlds.h"
 #include "gnn/train/validation.h"
@@ -26,9 +28,11 @@ struct TrainerSettings {
     std::string device = "cpu";  ///< cpu or cuda
     int threads = 1;             ///< of LibTorch and of the validation, 1 to 256
     std::uint64_t seed = 1;
-    std::int64_t iterations = 0;    ///< end of training, 0 to 1e9; 0: as many as fit into `minutes`
-    double minutes = 0.0;           ///< wall time of training, 0 to 1e6; 0: no limit
-    int pool = 40;                  ///< scenes trained on in turn, 1 to 1000
+    std::int64_t iterations = 0;  ///< end of training, 0 to 1e9; 0: as many as fit into `minutes`
+    double minutes = 0.0;         ///< wall time of training, 0 to 1e6; 0: no limit
+    int batch = 1;  ///< scenes of an iteration, whose mean gradient is followed: 1 to 4096, a
+                    ///< multiple of the number of processes
+    int pool = 40;  ///< scenes trained on in turn, for each of the batch, 1 to 1000
     int report_every = 100;         ///< iterations per row of metrics.csv, 1 to 1e6
     double validate_every = 10.0;   ///< minutes between validations, 0 to 1e4
     double validation_share = 0.1;  ///< of the time that they may take, 0 to 1; 0: none at all
@@ -52,14 +56,19 @@ struct TrainerSettings {
 /// bits, whether or not one of them was stopped or killed and resumed, and whatever was validated
 /// meanwhile. (Limited by `minutes` the learning rate follows the clock.)
 ///
-/// metrics.csv has a row for each `report_every` iterations; where a validation has ended, it also
-/// has single steps from unseen states (see Validation) and the means of rollouts (see
-/// RolloutResult): SCENE_rollout_K_{frames,mm,stretch} with K iterations after the network.
-/// rollouts.csv has each of them.
+/// Several processes share the scenes of the batch, on one machine or many; each has a trainer of
+/// the same settings. The first one writes all files, also the scenes of the others: a training may
+/// be resumed by another number of processes. Results depend on that number by rounding only.
+///
+/// metrics.csv has a row for each `report_every` iterations, of the first process's scenes; where a
+/// validation has ended, it also has single steps from unseen states (see Validation) and the means
+/// of rollouts (see RolloutResult): SCENE_rollout_K_{frames,mm,stretch} with K iterations after the
+/// network. rollouts.csv has each of them.
 class Trainer {
  public:
+    /// @param group  the processes that train; one alone by default
     /// @throws ArgumentError for settings out of range, LoadError if `out` cannot be written
-    explicit Trainer(TrainerSettings settings);
+    explicit Trainer(TrainerSettings settings, ProcessGroup group = {});
     ~Trainer();
 
     /// Goes on from the checkpoint in `out`. False: there is none.
@@ -67,10 +76,11 @@ class Trainer {
     bool resume();
 
     /// Trains until the end or until `stop` is set; saves checkpoint and weights. Stopped, it does
-    /// not validate any more.
+    /// not validate any more. Of several processes all stop if one is to.
+    /// @throws ProcessGroupError if another process has ended
     void run(const std::atomic<bool>& stop);
 
-    /// One iteration; the loss of its last step.
+    /// One iteration; the mean loss of its last step over the scenes of this process.
     double iterate();
 
     void save();
@@ -82,38 +92,56 @@ class Trainer {
     struct Run;
     struct Validated;
 
+    /// One scene of the batch: those it is drawn from, and what an iteration knows of it.
+    struct Lane {
+        Lane(int index, const SceneFactory& factory, const TrainerSettings& settings);
+
+        int number;  ///< in the batch
+        ScenePool pool;
+        TrainingScene* scene = nullptr;
+        ClothState kept;  ///< the scene's, before noise
+        int kept_age = 0;
+        Points prediction, target;
+        LossValue loss;
+        bool sound = true;
+    };
+
     double progress() const;
     bool is_done() const;
     double seconds_left() const;
-    void fill_pool(const std::atomic<bool>& stop);
-    void replace(size_t slot);
-    void observe(const TrainingScene& scene);
-    void add_noise(ClothState& state);
-    bool train_on(TrainingScene& scene, Points& prediction, Points& target);
-    bool move_on(TrainingScene& scene, const Points& prediction, const Points& target);
+    bool is_filled() const;
+    void fill_pools(const std::atomic<bool>& stop);
+    void begin(Lane& lane);
+    void prepare(Lane& lane);
+    void share_statistics();
+    bool differentiate(Lane& lane);
+    void step_together();
+    bool move_on(Lane& lane);
+    void end(Lane& lane);
     void begin_sums();
-    void kick_some(TrainingScene& scene);
+    void kick_some(Lane& lane);
     void report(bool validates);
     Validated validate();
     void write_row(const Validated& validated);
     void say(const Validated& validated) const;
     void load(torch::serialize::InputArchive& archive, const std::string& file);
+    void write_scenes(torch::serialize::OutputArchive& archive) const;
 
     TrainerSettings m_settings;
+    ProcessGroup m_group;
     torch::Device m_device;
     Network m_network;
     Adam m_adam;
-    SceneRandom m_random;
+    torch::Tensor m_sum;  ///< of gradients, and how many there are
     SceneFactory m_factory;
-    std::vector<std::unique_ptr<TrainingScene>> m_pool;
+    std::vector<Lane> m_lanes;
     std::unique_ptr<Validation> m_validation;
     std::unique_ptr<RolloutValidation> m_rollouts;
-    StatisticsAccumulator m_node, m_edge, m_world, m_body;
+    SceneStatistics m_own_statistics, m_statistics;  ///< of this process, of all
     std::int64_t m_iteration = 0;
-    double m_seconds = 0.0;  ///< trained so far
-    LossValue m_loss;
+    double m_seconds = 0.0;  ///< trained so far, by the clock of the first process
     TrainingSums m_sums;
-    std::unique_ptr<Run> m_run;
+    std::unique_ptr<Run> m_run;  ///< of the first process
 };
 
 }  // namespace cloth

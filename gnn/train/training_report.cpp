@@ -8,6 +8,8 @@
 
 namespace cloth {
 
+using torch::Tensor;
+
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -106,23 +108,34 @@ void Trainer::begin_sums() {
 }
 
 void Trainer::run(const std::atomic<bool>& stop) {
-    m_run = std::make_unique<Run>(m_settings, stop, m_seconds, m_iteration);
-    if (m_pool.empty()) fill_pool(stop);
+    if (m_group.is_first()) m_run = std::make_unique<Run>(m_settings, stop, m_seconds, m_iteration);
+    if (!is_filled()) fill_pools(stop);
     begin_sums();
     double saved = m_seconds;
-    while (!stop && !is_done()) {
-        iterate();
-        m_seconds = m_run->seconds();
-        if (m_iteration % m_settings.report_every == 0 && !is_done())
-            report(m_run->budget.is_due(m_seconds));
-        if (m_seconds - saved > 60.0 * m_settings.save_every) {
+    for (;;) {
+        const double now = m_run ? m_run->seconds() : 0.0;
+        const bool saves = m_run && now - saved > 60.0 * m_settings.save_every;
+        Tensor agreed = torch::tensor(
+            {stop ? 1.0 : 0.0, is_filled() ? 0.0 : 1.0, saves ? 1.0 : 0.0, now}, torch::kFloat64);
+        m_group.sum(agreed);
+        const auto said = [&](int k) { return agreed[k].item<double>(); };
+        m_seconds = said(3);
+        if (said(1) > 0.0) return;  // stopped before the first iteration
+        if (said(0) > 0.0 || is_done()) {
+            save();
+            if (m_run) report(said(0) == 0.0 && m_settings.validation_share > 0.0);
+            return;
+        }
+        if (said(2) > 0.0) {
             save();
             saved = m_seconds;
         }
+        iterate();
+        if (!m_run) continue;
+        m_seconds = m_run->seconds();
+        if (m_iteration % m_settings.report_every == 0 && !is_done())
+            report(m_run->budget.is_due(m_seconds));
     }
-    if (m_pool.empty()) return;  // stopped before the first iteration
-    save();
-    report(!stop && m_settings.validation_share > 0.0);
 }
 
 void Trainer::report(bool validates) {

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <torch/serialize/archive.h>
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gnn/train/recipe.h"
+#include "gnn/train/scene_random.h"
+#include "gnn/train/training_worlds.h"
+
+namespace cloth {
+
+/// The state of a pool, for checkpoints.
+struct ScenePoolState {
+    struct Scene {
+        std::uint64_t seed = 0;
+        int age = 0;
+        ClothState state;
+    };
+    std::string random;
+    std::vector<Scene> scenes;
+
+    /// @param prefix  of the keys
+    void write(torch::serialize::OutputArchive& archive, const std::string& prefix) const;
+    /// @param size  scenes of the pool
+    void read(torch::serialize::InputArchive& archive, const std::string& prefix, int size);
+};
+
+/// Scenes that are trained on in turn, and the random numbers that choose among them.
+class ScenePool {
+ public:
+    ScenePool(const SceneFactory& factory, int size, std::uint64_t seed);
+
+    bool empty() const { return m_scenes.empty(); }
+    SceneRandom& random() { return m_random; }
+
+    /// Makes all scenes and prepares their first steps, which may take minutes.
+    /// Empty afterwards if `stop` is set meanwhile.
+    /// @param made  is told of each scene
+    void fill(const Recipe& recipe, const std::atomic<bool>& stop,
+              const std::function<void(const TrainingScene&)>& made);
+
+    /// Draws the scene of the next iteration.
+    TrainingScene& draw();
+    TrainingScene& drawn() { return *m_scenes[m_slot]; }
+    /// Puts a new scene into the place of the drawn one.
+    void replace_drawn(const Recipe& recipe, double progress);
+
+    ScenePoolState state() const;
+    void set_state(const ScenePoolState& state);
+
+ private:
+    std::unique_ptr<TrainingScene> make(const Recipe& recipe, double progress);
+
+    const SceneFactory& m_factory;
+    int m_size;
+    SceneRandom m_random;
+    std::vector<std::unique_ptr<TrainingScene>> m_scenes;
+    size_t m_slot = 0;
+};
+
+}  // namespace cloth
