@@ -25,7 +25,7 @@ struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "kicks", loss;
     int width = 32, levels = 2, nice = 0;
-    std::optional<int> steps, batch;
+    std::optional<int> steps, sampled_edges, batch;
     int processes = 1;
     bool force_features = true, resume = false;
     std::map<std::string, double> recipe_values;  ///< of recipe_options
@@ -89,6 +89,10 @@ Options parse(int count, char** arguments) {
     add("--steps", options.steps, "L", "message passing steps (8, with coarse levels 15)");
     add("--levels", options.levels, "K",
         "coarse levels of hood, hood_fast and bistride, 1 to 6; takes 2 K + 1 steps or more (2)");
+    add("--sampled-edges", options.sampled_edges, "K",
+        "neighbours that a vertex hears in a message passing step, 1 to 32, of variants that "
+        "sample "
+        "(4)");
     add("--force-features", options.force_features, "0|1",
         "forces at x_t and at the guess as input (1)");
     add("--recipe", options.recipe, "NAME",
@@ -163,7 +167,14 @@ cloth::ModelConfig model_config(const Options& options) {
         ModelConfig::variant_named(options.variant).pooling == cloth::Pooling::none;
     const int steps = options.steps.value_or(is_flat ? 8 : 15);
     cloth::check_range("--steps", steps, 1, 64);
-    return ModelConfig::variant_named(options.variant, steps, options.levels);
+    ModelConfig config = ModelConfig::variant_named(options.variant, steps, options.levels);
+    if (!options.sampled_edges) return config;
+    if (config.sampled_edges == 0)
+        throw cloth::ArgumentError("--sampled-edges", "is for variants that sample neighbours",
+                                   "take --variant sampling, fast or hood_fast");
+    cloth::check_range("--sampled-edges", *options.sampled_edges, 1, 32);
+    config.sampled_edges = *options.sampled_edges;
+    return config;
 }
 
 cloth::TrainerSettings make_settings(const Options& options, int processes) {

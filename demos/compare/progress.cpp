@@ -2,15 +2,13 @@
 
 #include <unistd.h>
 
-#include <cstdio>
-
 namespace cloth {
 
 static double seconds(std::chrono::steady_clock::duration duration) {
     return std::chrono::duration<double>(duration).count();
 }
 
-Progress::Progress() : m_terminal(isatty(STDOUT_FILENO) != 0) {
+Progress::Progress(std::FILE* stream) : m_stream(stream), m_terminal(isatty(fileno(stream)) != 0) {
 }
 
 void Progress::update(int done, int all, const std::string& what) {
@@ -24,11 +22,11 @@ void Progress::update(int done, int all, const std::string& what) {
     m_last_print = now;
     const double spent = seconds(now - m_start);
     const double left = done > 0 ? spent / done * (all - done) : 0.0;
-    std::printf("%s%s: %d of %d, %.0f s", m_terminal ? "\r\033[K" : "", what.c_str(), done, all,
-                spent);
-    if (!last) std::printf(", %.0f s left", left);
-    if (last || !m_terminal) std::printf("\n");
-    std::fflush(stdout);
+    std::fprintf(m_stream, "%s%s: %d of %d, %.0f s", m_terminal ? "\r\033[K" : "", what.c_str(),
+                 done, all, spent);
+    if (!last) std::fprintf(m_stream, ", %.0f s left", left);
+    if (last || !m_terminal) std::fprintf(m_stream, "\n");
+    std::fflush(m_stream);
 }
 
 }  // namespace cloth

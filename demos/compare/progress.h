@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdio>
 #include <string>
 
 namespace cloth {
@@ -9,12 +10,13 @@ namespace cloth {
 /// a terminal, a plain line every few seconds otherwise.
 class Progress {
  public:
-    Progress();
+    explicit Progress(std::FILE* stream = stdout);
 
     void update(int done, int all, const std::string& what);
 
  private:
     using Clock = std::chrono::steady_clock;
+    std::FILE* m_stream;
     bool m_terminal;
     std::string m_what;
     Clock::time_point m_start, m_last_print;

@@ -45,6 +45,14 @@ void RolloutMeter::score_last_step(StepEnergies& energies, const Boundary& bound
     m_rollout.gap_frames.push_back(frame() - 1);
 }
 
+void RolloutMeter::record_terms(StepEnergies& energies, const Boundary& boundary,
+                                const Points& level) {
+    energies.begin(m_before, boundary, m_scene.frame_time());
+    EnergyTerms terms = energies.potential().terms(m_state.x);
+    terms.gravity -= energies.potential().terms(level).gravity;
+    m_rollout.terms.push_back(terms);
+}
+
 void RolloutMeter::fail(int frame, const std::string& how) {
     if (m_rollout.first_failed_frame) return;
     m_rollout.first_failed_frame = frame;

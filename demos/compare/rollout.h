@@ -23,6 +23,7 @@ struct Rollout {
     std::vector<double> gap, progress;  ///< in the frames gap_frames, from its own states
     std::vector<int> gap_frames;
     std::vector<double> residual;
+    std::vector<EnergyTerms> terms;  ///< (J), see record_terms()
     JitterMeter jitter;
     bool finite = true;
     std::optional<int> first_failed_frame;
@@ -47,6 +48,10 @@ class RolloutMeter {
     /// Minimises the last step's energy from the solver's result, which is expensive, and records
     /// how far the solver was from that.
     void score_last_step(StepEnergies& energies, const Boundary& boundary);
+
+    /// Records the last step's energy by term at the solver's result. Gravity's, which depends on
+    /// the origin, counts from the height of the garment at `level` (|V| x 3, m).
+    void record_terms(StepEnergies& energies, const Boundary& boundary, const Points& level);
 
     int frame() const { return static_cast<int>(m_rollout.ms.size()); }  ///< the next one
     const ClothState& state() const { return m_state; }

@@ -7,7 +7,6 @@
 #include "demos/compare/trajectory.h"
 
 namespace cloth {
-namespace {
 
 using nlohmann::json;
 
@@ -30,8 +29,6 @@ EnergyTerms mean_terms(const std::vector<EnergyTerms>& all) {
     }
     return mean;
 }
-
-}  // namespace
 
 void SingleSteps::score(const StepEnergies& energies, const Points& x, const Points& converged) {
     if (!x.allFinite()) {

@@ -18,6 +18,11 @@ struct SingleSteps {
     void score(const StepEnergies& energies, const Points& x, const Points& converged);
 };
 
+/// The terms that cloth on a body has, by name; null for what is not finite.
+nlohmann::json to_json(const EnergyTerms& terms);
+/// Of each term.
+EnergyTerms mean_terms(const std::vector<EnergyTerms>& all);
+
 /// The entry `one_step` of a report; null without any step.
 nlohmann::json to_json(const SingleSteps& steps);
 

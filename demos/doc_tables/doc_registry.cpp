@@ -1,6 +1,7 @@
 #include "demos/doc_tables/data_sets.h"
 #include "demos/doc_tables/engine_tables.h"
 #include "demos/doc_tables/motion_tables.h"
+#include "demos/doc_tables/paper_tables.h"
 #include "demos/doc_tables/scaling_tables.h"
 #include "demos/doc_tables/solver_tables.h"
 #include "demos/doc_tables/wardrobe_tables.h"
@@ -8,6 +9,12 @@
 namespace cloth {
 
 namespace {
+
+DocTable paper_table_of(const std::string& garment) {
+    return {"paper_" + garment, {"paper_tables"}, [garment](const std::vector<DataFile>& files) {
+                return paper_garment_table(files, garment);
+            }};
+}
 
 /// Which command makes which file.
 MarkdownTable commands_table() {
@@ -44,6 +51,15 @@ const Registry& doc_registry() {
          {"bfloat16_rollout", {"bfloat16_rollout"}, bfloat16_rollout_table},
          {"step", {"step"}, step_table},
          {"self_contact", {"self_contact"}, self_contact_table},
+         {"paper_claims", {"paper_tables"}, paper_claims_table},
+         {"paper_training", {"paper_tables"}, paper_training_table},
+         paper_table_of("tshirt"),
+         paper_table_of("pants"),
+         paper_table_of("dress"),
+         paper_table_of("tshirt_1000"),
+         {"paper_hood", {"paper_tables"}, paper_hood_table},
+         {"paper_terms", {"paper_tables"}, paper_terms_table},
+         {"paper_neighbours", {"paper_tables"}, paper_neighbours_table},
          {"commands", {}, [](const std::vector<DataFile>&) { return commands_table(); }}}};
     return registry;
 }

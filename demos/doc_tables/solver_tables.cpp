@@ -2,19 +2,11 @@
 
 #include <array>
 
+#include "demos/doc_tables/solver_cells.h"
+
 namespace cloth {
 
 namespace {
-
-std::string failure_of(const DataRow& row) {
-    if (row.is_null("/first_failed_frame")) return "–";
-    return "frame " + decimals(row.number("/first_failed_frame"), 0) + ": " + row.text("/failure");
-}
-
-/// A distance in mm, to the millimetre, below 10 to a tenth of it.
-std::string millimetres(double value) {
-    return decimals(value, value < 9.95 ? 1 : 0);
-}
 
 /// To the fine solution, of a row of speed_error.json.
 std::string distance_of(const DataRow& row) {

@@ -23,10 +23,8 @@ std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& st
     return rollouts;
 }
 
-namespace {
-
-Points single_step(const ClothState& before, const Boundary& boundary, double dt,
-                   Stepper& stepper) {
+static Points single_step(const ClothState& before, const Boundary& boundary, double dt,
+                          Stepper& stepper) {
     ClothState state = before;
     const StepReport report = stepper.step(boundary, dt, state);
     if (!report.finite) state.x.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -53,8 +51,6 @@ std::vector<SingleSteps> make_single_steps(const ComparisonScene& scene,
     }
     return steps;
 }
-
-}  // namespace
 
 std::vector<ContestResult> run_contest(const ComparisonScene& scene, const ClothState& start,
                                        const References& references,

@@ -29,6 +29,13 @@ std::vector<Rollout> roll_out(const ComparisonScene& scene, const ClothState& st
                               const std::vector<Contestant>& contestants,
                               const ProgressFunction& progress);
 
+/// Frame by frame each makes a single step from the reference's state, in turns.
+/// @return one entry per contestant, in order
+std::vector<SingleSteps> make_single_steps(const ComparisonScene& scene,
+                                           const References& references,
+                                           const std::vector<Contestant>& contestants,
+                                           const ProgressFunction& progress);
+
 /// roll_out(), then frame by frame each makes a single step from the reference's state.
 /// @return one result per contestant, in order
 std::vector<ContestResult> run_contest(const ComparisonScene& scene, const ClothState& start,

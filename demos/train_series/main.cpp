@@ -30,7 +30,8 @@ Options parse_options(const std::vector<std::string>& arguments) {
                  "train_series");
     set_up(app);
     app.add_flag("--list", options.list, "name the series and their trainings");
-    app.add_option("--series", options.series, "states (default) or variants")->type_name("NAME");
+    app.add_option("--series", options.series, "states (default), variants or neighbours")
+        ->type_name("NAME");
     add_list(app, "--only", settings.only, "trainings of the series (default: all)");
     add_whole_number(app, "--iterations", settings.iterations, 1, 10000000,
                      "of each training (default: the series' own)");

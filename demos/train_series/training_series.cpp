@@ -52,10 +52,28 @@ TrainingSeries variants() {
             }};
 }
 
+/// Figure 7 of the paper, with a small network.
+TrainingSeries neighbours() {
+    TrainingSeries series = {
+        "neighbours",
+        "how many neighbours a vertex hears in a message passing step",
+        {"--variant", "fast", "--width", "16", "--steps", "6", "--validation-garments",
+         "tshirt_1000", "--validation-clips", "01_01"},
+        3000,
+        {}};
+    for (int count = 1; count <= 7; ++count) {
+        const std::string number = std::to_string(count);
+        series.trainings.push_back({number,
+                                    number + (count == 1 ? " neighbour" : " neighbours"),
+                                    {"--sampled-edges", number}});
+    }
+    return series;
+}
+
 }  // namespace
 
 const std::vector<TrainingSeries>& training_series() {
-    static const std::vector<TrainingSeries> all = {states(), variants()};
+    static const std::vector<TrainingSeries> all = {states(), variants(), neighbours()};
     return all;
 }
 

@@ -20,7 +20,8 @@ struct TrainingSeries {
     std::vector<SeriesTraining> trainings;
 };
 
-/// `states`: what a network is trained on. `variants`: the paper's four networks.
+/// `states`: what a network is trained on. `variants`: the paper's four networks. `neighbours`: 1
+/// to 7 sampled neighbours.
 const std::vector<TrainingSeries>& training_series();
 
 /// @throws ArgumentError naming the series there are

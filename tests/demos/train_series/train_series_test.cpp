@@ -137,6 +137,28 @@ TEST_F(TrainSeries, TheLastCompleteRowCounts) {
     EXPECT_THROW(last_metrics_row(path), LoadError);
 }
 
+TEST_F(TrainSeries, AllCompleteRowsAreRead) {
+    const std::string path = m_folder + "/metrics.csv";
+    EXPECT_THROW(metrics_rows(path), LoadError) << "no such file";
+    write_text_file(path, "iteration,loss\n1,-0.5\n2,\n3,-");
+    const std::vector<nlohmann::ordered_json> rows = metrics_rows(path);
+    ASSERT_EQ(rows.size(), 2u);
+    EXPECT_EQ(rows[0].dump(), R"({"iteration":1.0,"loss":-0.5})");
+    EXPECT_EQ(rows[1].dump(), R"({"iteration":2.0})");
+    write_text_file(path, "iteration,loss\n1,high\n2,1\n");
+    EXPECT_THROW(metrics_rows(path), LoadError);
+    write_text_file(path, "");
+    EXPECT_TRUE(metrics_rows(path).empty());
+}
+
+TEST(TrainingSeriesNames, NeighboursAreOneToSeven) {
+    const TrainingSeries& series = training_series("neighbours");
+    ASSERT_EQ(series.trainings.size(), 7u);
+    for (size_t k = 0; k < 7; ++k)
+        EXPECT_EQ(series.trainings[k].arguments,
+                  (std::vector<std::string>{"--sampled-edges", std::to_string(k + 1)}));
+}
+
 TEST(TrainingSeriesNames, AreUnique) {
     std::set<std::string> series;
     for (const TrainingSeries& one : training_series()) {

@@ -136,6 +136,22 @@ TEST(Engine, TakesWidthsThatAreNotMultiplesOf32) {
     EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm());
 }
 
+TEST(Engine, TakesAnyNumberOfSampledNeighbours) {
+    // 1 to 7, as in the paper's figure 7; vertices of a sheet have 3 to 8.
+    for (const char* variant : {"sampling", "fast", "hood_fast"})
+        for (int neighbours = 1; neighbours <= 7; ++neighbours) {
+            ModelConfig config = small_config(variant);
+            config.sampled_edges = neighbours;
+            const EngineScene scene(config, 300);
+            const auto weights = random_weights(config);
+            EXPECT_EQ(weights->config.sampled_edges, neighbours);
+            Engine engine(*weights);
+            const Points expected = predict(*make_torch_predictor(*weights), scene);
+            EXPECT_LT((predict(engine, scene) - expected).norm(), 1e-5 * expected.norm())
+                << variant << ", " << neighbours;
+        }
+}
+
 TEST(Engine, TakesSchedulesThatSkipLevels) {
     // Long edges beside the mesh's in every step, or a step on the coarsest level at the end.
     for (const LevelSchedule& schedule :
