@@ -4,6 +4,7 @@
 
 #include "collision/self/self_resolve.h"
 #include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/untangling.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
@@ -28,18 +29,25 @@ class SelfContactProjection {
     /// finish() made of positions without any, and nothing passed through anything.
     void count_tangles(const Points& x, StepReport& report);
 
+    /// Untangles what the last count_tangles() counted, if the settings say so, and counts again.
+    /// @param state  as the step leaves it, at the positions that were counted
+    void untangle(const Untangling::Surroundings& outside, double dt, ClothState& state,
+                  StepReport& report);
+
     bool on() const { return m_tools.has_value(); }
     /// What the last finish() had to do.
     const SelfResolveReport& last() const { return m_last; }
 
  private:
     double depth_of_moved(const SurfaceContacts& contacts);
+    void report_tangles(const std::vector<Tangle>& tangles, const Points& x, StepReport& report);
 
     struct Tools {
         SelfResolver resolver;
         SelfTangles tangles;
     };
     std::optional<Tools> m_tools;
+    std::optional<Untangling> m_untangling;
     SelfContactSettings m_settings;
     std::vector<char> m_pinned;
     std::vector<int> m_rows;

@@ -120,7 +120,11 @@ StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& s
     Stopwatch watch;
     project(boundary, state, report);
     m_contact_ms = report.times.contact = watch.lap();
-    return accept(dt, state) ? report : StepReport::failed();
+    if (!accept(dt, state)) return StepReport::failed();
+    m_self_contact.untangle(
+        {boundary, m_proximity, m_goals, m_settings.safety_distance, m_contacts}, dt, state,
+        report);
+    return report;
 }
 
 void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {

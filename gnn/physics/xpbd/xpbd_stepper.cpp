@@ -82,7 +82,11 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
     if (m_garment->has_goals()) finish_goals(dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
-    return report.finite ? report : StepReport::failed();
+    if (!report.finite) return StepReport::failed();
+    m_self_contact.untangle({boundary, m_proximity, m_goal_resolver, safety_distance, m_contacts},
+                            dt, state, report);
+    m_last_x = state.x;
+    return report;
 }
 
 /// Replaces the state, or leaves it if a number is not finite.
