@@ -13,7 +13,7 @@ struct SelfContactSettings {
     /// Energy per length of a tangle (N), see TangleMeasure, which untangling may spend on the
     /// fabric, 0 to 10; 0: no untangling. Too little leaves tangles of stiff cloth
     double tension = 0.1;
-    int untangling_moves = 4;  ///< of at most half the thickness, in each step that ends tangled,
+    int untangling_moves = 8;  ///< of at most half the thickness, in each step that ends tangled,
                                ///< 0 to 100; 0: no untangling
     int threads = 0;  ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
 

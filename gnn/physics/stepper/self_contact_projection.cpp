@@ -61,6 +61,12 @@ void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {
     report_tangles(m_tools->tangles.find(x, m_settings.threads), x, report);
 }
 
+const std::vector<Tangle>* SelfContactProjection::tangles_at(const Points& x) {
+    if (!m_untangling || same(x, m_untangled)) return nullptr;
+    if (!same(x, m_tangled)) keep(m_tools->tangles.find(x, m_settings.threads), x);
+    return m_left.empty() ? nullptr : &m_left;
+}
+
 void SelfContactProjection::untangle(const Untangling::Surroundings& outside, double dt,
                                      ClothState& state, StepReport& report) {
     if (!m_untangling || report.tangles == 0) return;
@@ -72,10 +78,16 @@ void SelfContactProjection::report_tangles(const std::vector<Tangle>& tangles, c
                                            StepReport& report) {
     report.tangles = static_cast<int>(tangles.size());
     report.first_tangle = tangles.empty() ? Vec3(Vec3::Zero()) : tangles.front().point;
+    keep(tangles, x);
+}
+
+void SelfContactProjection::keep(const std::vector<Tangle>& tangles, const Points& x) {
+    m_left = tangles;
     if (tangles.empty())
         m_untangled = x;
     else
         m_untangled.resize(0, 3);
+    m_tangled = x;
 }
 
 double SelfContactProjection::depth_of_moved(const SurfaceContacts& contacts) {

@@ -139,7 +139,8 @@ void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEn
 void StepSolver::begin(const Boundary& boundary, double dt, const ClothState& state) {
     const InertialStep* inertia =
         m_time.begin_step(state, m_contacts, m_potential.settings().contact_distance, dt);
-    m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
+    m_potential.begin_step(state, boundary, m_contacts, dt, inertia,
+                           m_self_contact.tangles_at(state.x));
 }
 
 /// Leaves where to start in m_x; returns E and its gradient there if they are known.

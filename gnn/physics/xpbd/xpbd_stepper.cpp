@@ -114,7 +114,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_prepared_dt = dt;
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
-    m_self_planes.begin_step(state, dt);
+    m_self_planes.begin_step(state, dt, m_self_contact.tangles_at(state.x));
     m_goals.begin_step(boundary.goals, dt, m_settings.substeps);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;
