@@ -51,7 +51,7 @@ UntanglingReport Untangling::run(const Surroundings& outside, double dt, ClothSt
 
 void Untangling::measure(const Boundary& boundary) {
     m_size = m_measure.find(m_x, m_settings.threads);
-    m_energy = energy(boundary, m_x) + m_settings.tension * m_size;
+    m_energy = energy(boundary, m_x) + m_settings.untangling_tension * m_size;
 }
 
 /// One move of m_x; false: none lowers the energy.
@@ -64,7 +64,8 @@ bool Untangling::move(const Surroundings& outside) {
         m_trial = m_x + step * m_direction;
         hold(outside);
         const double size = m_measure.find(m_trial, m_settings.threads, &m_wrong);
-        const double value = energy(outside.boundary, m_trial) + m_settings.tension * size;
+        const double value =
+            energy(outside.boundary, m_trial) + m_settings.untangling_tension * size;
         if (!(value < m_energy)) continue;
         m_x.swap(m_trial);
         m_energy = value;

@@ -18,19 +18,21 @@ struct UntanglingReport {
     double after = 0.0;
 };
 
-/// Draws cloth that has passed through itself, or through another layer, apart again, a little in
-/// each step. It descends along smoothed, mass-weighted gradients of TangleMeasure P and takes a
-/// move only if
+/// Draws cloth that has passed through itself, or through another layer, apart again, a little
+/// after each step. It descends along smoothed, mass-weighted gradients of TangleMeasure P and
+/// takes a move only if
 ///
-///     fabric's energy + potential of gravity + tension P
+///     fabric's energy + potential of gravity + untangling_tension P
 ///
-/// falls by it. Velocities do not follow the moves; what of the velocities undoes them is taken
-/// out. So in untangling neither the kinetic energy nor the sum of all energies, that of the
-/// tangles included, rises, and linear momentum is kept but for pins, goals and obstacles. What
-/// untangling can give to the cloth is bounded by the energy of its tangles.
+/// falls by it, where a part that the move itself cuts off does not count yet. So the fabric and
+/// gravity gain at most the tension times what P has lost.
+///
+/// Velocities do not follow the moves. What of them would undo the moves is taken out, by one
+/// factor for the whole garment: kinetic energy never rises here, and where no pin, goal or
+/// obstacle is in the way, linear momentum and the centre of mass are kept.
 ///
 /// The result depends on the state alone: there is no memory from step to step. Effort is bounded
-/// by the settings, whether or not the tangles can be undone.
+/// by the settings, whether or not the tangles can be undone. Never throws.
 class Untangling {
  public:
     /// Keeps a reference to `garment`. @throws ArgumentError if a setting is out of range
