@@ -50,6 +50,8 @@ TEST(SettingsRanges, SelfContact) {
     check_self_contact({});  // 0: off
     expect_range("SelfContactSettings.weight", &S::weight, 1e3, 1e6, use);
     expect_range("SelfContactSettings.rounds", &S::rounds, 0, 100, use);
+    expect_range("SelfContactSettings.untangling_tension", &S::untangling_tension, 0.0, 10.0, use);
+    expect_range("SelfContactSettings.untangling_moves", &S::untangling_moves, 0, 100, use);
     expect_range("SelfContactSettings.threads", &S::threads, 0, 1024, use);
 }
 

@@ -82,7 +82,8 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
 
 void IncrementalPotential::begin_step(const ClothState& state, const Boundary& boundary,
                                       const SurfaceContacts& contacts, double dt,
-                                      const InertialStep* inertia) {
+                                      const InertialStep* inertia,
+                                      const std::vector<Tangle>* tangles) {
     const Eigen::Index count = m_garment->vertex_count();
     if (!(dt > 0.0) || !std::isfinite(dt))
         throw ArgumentError("dt", std::to_string(dt) + " is no time step", "pass seconds, above 0");
@@ -104,7 +105,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
                           {m_settings.friction_scale, m_settings.friction_distance,
                            m_settings.friction_slip_speed * dt, m_settings.contact_distance,
                            m_settings.contact_weight, m_settings.friction_limit});
-    m_self_contact.begin_step(state, dt);
+    m_self_contact.begin_step(state, dt, tangles);
     m_goals.begin_step(state, boundary.goals, dt, m_settings.goal_stiffness);
     m_force_scale = norm_of_forces_at(state);
 }

@@ -6,6 +6,7 @@
 
 #include "collision/self/self_contact_settings.h"
 #include "collision/self/self_proximity.h"
+#include "collision/self/self_tangles.h"
 #include "data/core/cloth_state.h"
 
 namespace cloth {
@@ -44,7 +45,11 @@ class SelfContactEnergy {
 
     /// Finds the pairs that are near at t, or would be on the way to t + dt with the velocities at
     /// t.
-    void begin_step(const ClothState& state, double dt);
+    /// @param tangles  at t: pairs of elements that both belong to tangles are left out, for they
+    /// may
+    ///                 be on the wrong side; null: none is
+    void begin_step(const ClothState& state, double dt,
+                    const std::vector<Tangle>* tangles = nullptr);
 
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
@@ -62,14 +67,19 @@ class SelfContactEnergy {
     const std::vector<Pair>& pairs() const { return m_pairs; }  ///< of this step
 
  private:
+    void mark_tangled(const std::vector<Tangle>* tangles);
+    bool is_tangled(const SelfPair& pair) const;
     void take_pairs();
     void lift(const Pair& pair, double height, Points& x) const;
 
     SelfContactSettings m_settings;
     std::optional<SelfProximity> m_proximity;
-    VectorX m_inverse_masses;                       ///< |V| (1/kg), 0 for pins
-    VectorX m_area;                                 ///< |V|, over the mean
-    Points m_motion;                                ///< |V| x 3 (m)
+    VectorX m_inverse_masses;  ///< |V| (1/kg), 0 for pins
+    VectorX m_area;            ///< |V|, over the mean
+    std::vector<std::array<int, 2>> m_edges;
+    Faces m_faces;
+    std::vector<char> m_tangled;  ///< |V|: of a tangled edge or face; empty: there is none
+    Points m_motion;              ///< |V| x 3 (m)
     std::vector<int> m_vertex_pairs, m_edge_pairs;  ///< |V|, |E|: pairs of an element
     std::vector<Pair> m_pairs;
 };

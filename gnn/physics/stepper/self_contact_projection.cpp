@@ -23,6 +23,7 @@ SelfContactProjection::SelfContactProjection(const Garment& garment,
     check_self_contact(settings);
     if (settings.on())
         m_tools.emplace(Tools{SelfResolver(garment, settings), SelfTangles(garment)});
+    if (settings.untangles()) m_untangling.emplace(garment, settings);
 }
 
 void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const Boundary& boundary,
@@ -57,13 +58,36 @@ void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {
         m_untangled.swap(m_next_untangled);
         return;
     }
-    const std::vector<Tangle>& tangles = m_tools->tangles.find(x, m_settings.threads);
+    report_tangles(m_tools->tangles.find(x, m_settings.threads), x, report);
+}
+
+const std::vector<Tangle>* SelfContactProjection::tangles_at(const Points& x) {
+    if (!m_untangling || same(x, m_untangled)) return nullptr;
+    if (!same(x, m_tangled)) keep(m_tools->tangles.find(x, m_settings.threads), x);
+    return m_left.empty() ? nullptr : &m_left;
+}
+
+void SelfContactProjection::untangle(const Untangling::Surroundings& outside, double dt,
+                                     ClothState& state, StepReport& report) {
+    if (!m_untangling || report.tangles == 0) return;
+    if (m_untangling->run(outside, dt, state).moves > 0)
+        report_tangles(m_untangling->tangles(), state.x, report);
+}
+
+void SelfContactProjection::report_tangles(const std::vector<Tangle>& tangles, const Points& x,
+                                           StepReport& report) {
     report.tangles = static_cast<int>(tangles.size());
-    m_untangled.resize(0, 3);
+    report.first_tangle = tangles.empty() ? Vec3(Vec3::Zero()) : tangles.front().point;
+    keep(tangles, x);
+}
+
+void SelfContactProjection::keep(const std::vector<Tangle>& tangles, const Points& x) {
+    m_left = tangles;
     if (tangles.empty())
         m_untangled = x;
     else
-        report.first_tangle = tangles.front().point;
+        m_untangled.resize(0, 3);
+    m_tangled = x;
 }
 
 double SelfContactProjection::depth_of_moved(const SurfaceContacts& contacts) {

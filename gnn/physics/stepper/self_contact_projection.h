@@ -4,6 +4,7 @@
 
 #include "collision/self/self_resolve.h"
 #include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/untangling.h"
 #include "gnn/stepper.h"
 
 namespace cloth {
@@ -28,25 +29,39 @@ class SelfContactProjection {
     /// finish() made of positions without any, and nothing passed through anything.
     void count_tangles(const Points& x, StepReport& report);
 
+    /// Tangles at the start of a step, of which untangling wants to know; null: none. Looks for
+    /// them only where x is not what the last step ended with.
+    const std::vector<Tangle>* tangles_at(const Points& x);
+
+    /// Untangles what the last count_tangles() counted, if the settings say so, and counts again.
+    /// @param state  as the step leaves it, at the positions that were counted
+    void untangle(const Untangling::Surroundings& outside, double dt, ClothState& state,
+                  StepReport& report);
+
     bool on() const { return m_tools.has_value(); }
     /// What the last finish() had to do.
     const SelfResolveReport& last() const { return m_last; }
 
  private:
     double depth_of_moved(const SurfaceContacts& contacts);
+    void keep(const std::vector<Tangle>& tangles, const Points& x);
+    void report_tangles(const std::vector<Tangle>& tangles, const Points& x, StepReport& report);
 
     struct Tools {
         SelfResolver resolver;
         SelfTangles tangles;
     };
     std::optional<Tools> m_tools;
+    std::optional<Untangling> m_untangling;
     SelfContactSettings m_settings;
     std::vector<char> m_pinned;
     std::vector<int> m_rows;
     SurfaceContacts m_none;  ///< where there are no obstacles
     SelfResolveReport m_last;
-    Points m_untangled;       ///< |V| x 3 (m): positions at which there are none, or empty
-    Points m_next_untangled;  ///< as the last finish() knows them
+    std::vector<Tangle> m_left;  ///< the tangles at m_tangled
+    Points m_tangled;            ///< |V| x 3 (m): where they were looked for last
+    Points m_untangled;          ///< |V| x 3 (m): positions at which there are none, or empty
+    Points m_next_untangled;     ///< as the last finish() knows them
 };
 
 }  // namespace cloth

@@ -120,7 +120,11 @@ StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& s
     Stopwatch watch;
     project(boundary, state, report);
     m_contact_ms = report.times.contact = watch.lap();
-    return accept(dt, state) ? report : StepReport::failed();
+    if (!accept(dt, state)) return StepReport::failed();
+    m_self_contact.untangle(
+        {boundary, m_proximity, m_goals, m_settings.safety_distance, m_contacts}, dt, state,
+        report);
+    return report;
 }
 
 void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {
@@ -135,7 +139,8 @@ void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEn
 void StepSolver::begin(const Boundary& boundary, double dt, const ClothState& state) {
     const InertialStep* inertia =
         m_time.begin_step(state, m_contacts, m_potential.settings().contact_distance, dt);
-    m_potential.begin_step(state, boundary, m_contacts, dt, inertia);
+    m_potential.begin_step(state, boundary, m_contacts, dt, inertia,
+                           m_self_contact.tangles_at(state.x));
 }
 
 /// Leaves where to start in m_x; returns E and its gradient there if they are known.

@@ -15,7 +15,10 @@ class SelfContactPlanes {
     /// @throws ArgumentError if a setting is out of range
     SelfContactPlanes(const Garment& garment, const SelfContactSettings& settings);
 
-    void begin_step(const ClothState& state, double dt) { m_energy.begin_step(state, dt); }
+    /// @param tangles  at t, see SelfContactEnergy::begin_step()
+    void begin_step(const ClothState& state, double dt, const std::vector<Tangle>* tangles) {
+        m_energy.begin_step(state, dt, tangles);
+    }
 
     /// Moves pairs that are nearer than the thickness, or than at t where that is less, apart
     /// again, one after the other. Keeps linear momentum; pinned vertices stay.

@@ -82,7 +82,11 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
     if (m_garment->has_goals()) finish_goals(dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
-    return report.finite ? report : StepReport::failed();
+    if (!report.finite) return StepReport::failed();
+    m_self_contact.untangle({boundary, m_proximity, m_goal_resolver, safety_distance, m_contacts},
+                            dt, state, report);
+    m_last_x = state.x;
+    return report;
 }
 
 /// Replaces the state, or leaves it if a number is not finite.
@@ -110,7 +114,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_prepared_dt = dt;
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
-    m_self_planes.begin_step(state, dt);
+    m_self_planes.begin_step(state, dt, m_self_contact.tangles_at(state.x));
     m_goals.begin_step(boundary.goals, dt, m_settings.substeps);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;

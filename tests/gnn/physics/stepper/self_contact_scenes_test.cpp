@@ -98,12 +98,14 @@ TEST(SelfContactScenes, ASheetThatFallsOnASheetStaysAbove) {
     EXPECT_GT(above, 100);
 }
 
-TEST(SelfContactScenes, ATangledStartIsReportedAndGetsNoWorse) {
+TEST(SelfContactScenes, WithoutUntanglingATangledStartIsReportedAndGetsNoWorse) {
     const LayerScene scene = tangled_sheets(100);
     SelfTangles tangles(scene.garment);
     const int tangled = static_cast<int>(tangles.find(scene.start.x).size());
     ASSERT_GT(tangled, 15);
-    ClothStepper stepper(scene.garment, solver(4e-3));
+    ClothStepperSettings settings = solver(4e-3);
+    settings.step.potential.self_contact.untangling_moves = 0;
+    ClothStepper stepper(scene.garment, settings);
     ClothState state = scene.start;
     for (int frame = 0; frame < 20; ++frame) {
         const StepReport report = stepper.step(scene.boundary, dt, state);

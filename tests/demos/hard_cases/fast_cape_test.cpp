@@ -1,0 +1,55 @@
+// The cape of the hard case, as long as the character darts about and when it stands still again.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "collision/self/self_tangles.h"
+#include "demos/hard_cases/case_scenes.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
+
+namespace cloth::fast_cape_test {
+namespace {
+
+constexpr int moving = 120, calm = 60;  // frames
+
+struct Tangled {
+    int most = 0;    ///< edges in the worst frame
+    int calm = 0;    ///< in the last one
+    int frames = 0;  ///< in which any is
+};
+
+Tangled run(int untangling_moves) {
+    const HardSceneParts parts = fast_cape();
+    ClothStepperSettings settings;
+    settings.step.potential.self_contact = parts.self_contact;
+    settings.step.potential.self_contact.untangling_moves = untangling_moves;
+    ClothStepper stepper(parts.garment, settings);
+    ClothState state = parts.start;
+    SelfTangles tangles(parts.garment);
+    Tangled result;
+    for (int frame = 0; frame < moving + calm; ++frame) {
+        const double t0 = std::min(frame, moving) * parts.dt;
+        const double t1 = std::min(frame + 1, moving) * parts.dt;
+        EXPECT_TRUE(stepper.step(parts.outside(t0, t1), parts.dt, state).finite);
+        result.calm = static_cast<int>(tangles.find(state.x).size());
+        result.most = std::max(result.most, result.calm);
+        result.frames += result.calm > 0;
+    }
+    ::testing::Test::RecordProperty("most_" + std::to_string(untangling_moves), result.most);
+    ::testing::Test::RecordProperty("calm_" + std::to_string(untangling_moves), result.calm);
+    ::testing::Test::RecordProperty("frames_" + std::to_string(untangling_moves), result.frames);
+    return result;
+}
+
+}  // namespace
+
+TEST(FastCape, IsUntangledWhenTheCharacterStandsStill) {
+    const Tangled with = run(SelfContactSettings().untangling_moves), without = run(0);
+    EXPECT_EQ(with.calm, 0);
+    EXPECT_LE(with.most, 40);
+    EXPECT_GT(without.calm, 40) << "the scene asks for nothing";
+    EXPECT_LT(2 * with.frames, without.frames);
+}
+
+}  // namespace cloth::fast_cape_test
