@@ -9,11 +9,14 @@ namespace cloth {
 constexpr double relaxation = 1.5;       // of the Jacobi steps; they converge below 2
 constexpr double good_enough = 1e-6;     // m: lifts below this end the sweeps
 constexpr double planes_per_vertex = 8;  // reserved
+constexpr double rounding = 1e-9;        // m: that is left to planes which rest
 
 PlanePush::PlanePush(VectorX inverse_masses)
     : m_inverse_masses(std::move(inverse_masses)),
       m_shares(static_cast<size_t>(m_inverse_masses.size()), 0),
-      m_before(Points::Zero(m_inverse_masses.size(), 3)) {
+      m_before(Points::Zero(m_inverse_masses.size(), 3)),
+      m_last(m_before),
+      m_path(VectorX::Zero(m_inverse_masses.size())) {
     m_planes.reserve(static_cast<size_t>(planes_per_vertex) * m_shares.size());
     m_touched.reserve(m_shares.size());
 }
@@ -58,7 +61,8 @@ double PlanePush::share_out(const Points& x) {
             const int i = plane.vertex[k];
             if (m_shares[static_cast<size_t>(i)]++ == 0) {
                 m_touched.push_back(i);
-                m_before.row(i) = x.row(i);
+                m_before.row(i) = m_last.row(i) = x.row(i);
+                m_path[i] = 0.0;
             }
         }
     }
@@ -70,15 +74,34 @@ double PlanePush::share_out(const Points& x) {
     return deepest;
 }
 
-/// Returns the largest lift (m).
+/// The point of a plane has moved no farther than this since the sweeps began (m).
+double PlanePush::path_of(const Plane& plane) const {
+    double path = 0.0;
+    for (size_t k = 0; k < plane.count; ++k)
+        path += std::abs(plane.weight[k]) * m_path[plane.vertex[k]];
+    return path;
+}
+
+void PlanePush::follow(const Points& x) {
+    for (const int i : m_touched) {
+        m_path[i] += (x.row(i) - m_last.row(i)).norm();
+        m_last.row(i) = x.row(i);
+    }
+}
+
+/// Returns the largest lift (m). A plane that lifts nothing is not looked at again before its
+/// point may have come down to it: most planes keep lengths of edges that nothing lengthens.
 double PlanePush::sweep(Points& x) {
     double largest = 0.0;
     for (Plane& plane : m_planes) {
-        if (!(plane.mobility > 0.0)) continue;
-        const double lift = relaxation * missing(plane, x);
+        if (!(plane.mobility > 0.0) || (plane.idle && path_of(plane) < plane.idle_until)) continue;
+        const double below = missing(plane, x);
+        const double lift = relaxation * below;
         plane.change = std::max(lift / plane.mobility, -plane.multiplier);
         plane.multiplier += plane.change;
         largest = std::max(largest, std::abs(plane.change) * plane.mobility);
+        plane.idle = plane.multiplier == 0.0 && plane.change == 0.0;
+        if (plane.idle) plane.idle_until = path_of(plane) - below - rounding;
     }
     for (const Plane& plane : m_planes) {
         if (plane.change == 0.0) continue;
@@ -86,6 +109,7 @@ double PlanePush::sweep(Points& x) {
             x.row(plane.vertex[k]) += plane.weight[k] * m_inverse_masses[plane.vertex[k]] *
                                       plane.change * plane.normal.transpose();
     }
+    follow(x);
     return largest;
 }
 

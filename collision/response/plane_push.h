@@ -50,11 +50,15 @@ class PlanePush {
         double mobility = 0.0;    ///< lift per multiplier, of vertices shared out (1/kg)
         double multiplier = 0.0;  ///< (kg m)
         double change = 0.0;      ///< of the multiplier in this sweep
+        bool rests = false;       ///< it lifts nothing
+        double idle_until = 0.0;  ///< before its point has come so far (m)
     };
 
     double missing(const Plane& plane, const Points& x) const;
     double share_out(const Points& x);
     double sweep(Points& x);
+    double path_of(const Plane& plane) const;
+    void follow(const Points& x);
     void limit(double allowed, Points& x) const;
 
     VectorX m_inverse_masses;
@@ -62,6 +66,8 @@ class PlanePush {
     std::vector<int> m_touched;
     std::vector<int> m_shares;  ///< |V|: planes of a vertex
     Points m_before;            ///< |V| x 3 (m)
+    Points m_last;              ///< |V| x 3 (m): after the last sweep
+    VectorX m_path;             ///< |V| (m): in the sweeps so far
 };
 
 }  // namespace cloth
