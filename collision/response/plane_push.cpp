@@ -9,7 +9,7 @@ namespace cloth {
 constexpr double relaxation = 1.5;       // of the Jacobi steps; they converge below 2
 constexpr double good_enough = 1e-6;     // m: lifts below this end the sweeps
 constexpr double planes_per_vertex = 8;  // reserved
-constexpr double rounding = 1e-9;        // m: that is left to planes which rest
+constexpr double rounding = 1e-9;        // m: that idle planes keep clear
 
 PlanePush::PlanePush(VectorX inverse_masses)
     : m_inverse_masses(std::move(inverse_masses)),

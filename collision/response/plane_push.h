@@ -50,7 +50,7 @@ class PlanePush {
         double mobility = 0.0;    ///< lift per multiplier, of vertices shared out (1/kg)
         double multiplier = 0.0;  ///< (kg m)
         double change = 0.0;      ///< of the multiplier in this sweep
-        bool rests = false;       ///< it lifts nothing
+        bool idle = false;        ///< it lifts nothing
         double idle_until = 0.0;  ///< before its point has come so far (m)
     };
 
