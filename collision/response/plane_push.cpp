@@ -15,8 +15,7 @@ PlanePush::PlanePush(VectorX inverse_masses)
     : m_inverse_masses(std::move(inverse_masses)),
       m_shares(static_cast<size_t>(m_inverse_masses.size()), 0),
       m_before(Points::Zero(m_inverse_masses.size(), 3)),
-      m_last(m_before),
-      m_path(VectorX::Zero(m_inverse_masses.size())) {
+      m_last(m_before) {
     m_planes.reserve(static_cast<size_t>(planes_per_vertex) * m_shares.size());
     m_touched.reserve(m_shares.size());
 }
@@ -62,31 +61,28 @@ double PlanePush::share_out(const Points& x) {
             if (m_shares[static_cast<size_t>(i)]++ == 0) {
                 m_touched.push_back(i);
                 m_before.row(i) = m_last.row(i) = x.row(i);
-                m_path[i] = 0.0;
             }
         }
     }
     for (Plane& plane : m_planes)
-        for (size_t k = 0; k < plane.count; ++k)
+        for (size_t k = 0; k < plane.count; ++k) {
             plane.mobility += plane.weight[k] * plane.weight[k] *
                               m_inverse_masses[plane.vertex[k]] *
                               m_shares[static_cast<size_t>(plane.vertex[k])];
+            plane.reach += std::abs(plane.weight[k]);
+        }
+    m_path = 0.0;
     return deepest;
 }
 
-/// The point of a plane has moved no farther than this since the sweeps began (m).
-double PlanePush::path_of(const Plane& plane) const {
-    double path = 0.0;
-    for (size_t k = 0; k < plane.count; ++k)
-        path += std::abs(plane.weight[k]) * m_path[plane.vertex[k]];
-    return path;
-}
-
-void PlanePush::follow(const Points& x) {
+/// How far the vertex that moved farthest did since the last call (m).
+double PlanePush::farthest_motion(const Points& x) {
+    double squared = 0.0;
     for (const int i : m_touched) {
-        m_path[i] += (x.row(i) - m_last.row(i)).norm();
+        squared = std::max(squared, (x.row(i) - m_last.row(i)).squaredNorm());
         m_last.row(i) = x.row(i);
     }
+    return std::sqrt(squared);
 }
 
 /// Returns the largest lift (m). A plane that lifts nothing is not looked at again before its
@@ -94,14 +90,14 @@ void PlanePush::follow(const Points& x) {
 double PlanePush::sweep(Points& x) {
     double largest = 0.0;
     for (Plane& plane : m_planes) {
-        if (!(plane.mobility > 0.0) || (plane.idle && path_of(plane) < plane.idle_until)) continue;
+        if (m_path < plane.idle_until || !(plane.mobility > 0.0)) continue;
         const double below = missing(plane, x);
         const double lift = relaxation * below;
         plane.change = std::max(lift / plane.mobility, -plane.multiplier);
         plane.multiplier += plane.change;
         largest = std::max(largest, std::abs(plane.change) * plane.mobility);
-        plane.idle = plane.multiplier == 0.0 && plane.change == 0.0;
-        if (plane.idle) plane.idle_until = path_of(plane) - below - rounding;
+        if (plane.multiplier == 0.0 && plane.change == 0.0)
+            plane.idle_until = m_path - (below + rounding) / plane.reach;
     }
     for (const Plane& plane : m_planes) {
         if (plane.change == 0.0) continue;
@@ -109,7 +105,7 @@ double PlanePush::sweep(Points& x) {
             x.row(plane.vertex[k]) += plane.weight[k] * m_inverse_masses[plane.vertex[k]] *
                                       plane.change * plane.normal.transpose();
     }
-    follow(x);
+    m_path += farthest_motion(x);
     return largest;
 }
 
