@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bullet_ext/softBodyGarment.h"
 
@@ -88,7 +89,7 @@ std::vector<Slider> findSliders(const btSoftBody& body, const SlidingStep& step)
     const Vec3 gravity = step.length * toVec3(body.m_worldInfo->m_gravity);
     const int iterations = std::max(1, body.m_cfg.piterations);
     Points forces;
-    const bool forces_known = step.stepper.internal_forces(step.to.x, forces);
+    std::optional<bool> forces_known;  // asked for once a node touches something
     std::vector<Slider> sliders;
     for (int i = 0; i < body.m_nodes.size(); ++i) {
         if (step.garment.is_pinned()[static_cast<size_t>(i)]) continue;
@@ -104,9 +105,10 @@ std::vector<Slider> findSliders(const btSoftBody& body, const SlidingStep& step)
                         touch.distance < kRubbed,
                         false};
         contact.coefficient = std::clamp(contact.coefficient, 0.0, 1.0);
-        const double weight = step.garment.masses()[i] * gravity.norm() / step.length;
-        if (forces_known) contact.pressed = forces.row(i).dot(contact.normal) < -0.1 * weight;
         if (contact.leaves()) continue;
+        const double weight = step.garment.masses()[i] * gravity.norm() / step.length;
+        if (!forces_known) forces_known = step.stepper.internal_forces(step.to.x, forces);
+        if (*forces_known) contact.pressed = forces.row(i).dot(contact.normal) < -0.1 * weight;
         const Brake brake = braking(contact, iterations, step.length / step.world_step);
         if (!brake.change.isZero(0.0))
             sliders.push_back({touch.solid, i, mass_ratio * step.garment.masses()[i], brake});
@@ -156,12 +158,17 @@ void limitStretch(const SlidingStep& step, const Points& x, double taken) {
     const auto energy = [&](const Points& at) {
         return step.stepper.internal_energy(at).value_or(0.0);
     };
-    const double most = std::max(energy(step.from.x), energy(x)) + taken;
     const Points back = step.to.x - x;
-    for (const double part : {1.0, 0.5, 0.25, 0.0}) {
+    const double before = energy(x);
+    std::optional<double> at_start;  // asked for where the end does not allow it
+    for (const double part : {1.0, 0.5, 0.25}) {
         step.to.x = x + part * back;
-        if (energy(step.to.x) <= most) return;
+        const double now = energy(step.to.x);
+        if (now <= before + taken) return;
+        if (!at_start) at_start = energy(step.from.x);
+        if (now <= *at_start + taken) return;
     }
+    step.to.x = x;
 }
 
 }  // namespace

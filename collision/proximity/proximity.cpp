@@ -87,6 +87,7 @@ struct Target {
 struct Nearest {
     const Target* target = nullptr;
     double distance = no_distance;
+    double clearance = no_distance;  // no surface is nearer
     SurfaceHit on_mesh;
     PrimitiveHit on_primitive;
 };
@@ -142,10 +143,14 @@ class SearchTogether {
 Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t point, double radius,
                      LimbSet ignored) {
     Nearest nearest;
-    if (!x.allFinite()) return nearest;
+    if (!x.allFinite()) {
+        nearest.clearance = radius;
+        return nearest;
+    }
     for (const Target& target : targets) {
         if ((target.obstacle->solid & ignored) != 0) continue;
         if (target.surface) {
+            nearest.clearance = std::min(nearest.clearance, radius);
             const SurfaceHit& hit = target.answers->of[point].hit;
             if (hit.face < 0 || hit.distance >= nearest.distance) continue;
             if (std::abs(hit.distance) > radius) continue;
@@ -153,12 +158,14 @@ Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t p
             nearest.distance = hit.distance;
         } else {
             const PrimitiveHit hit = closest_on_primitive(*target.obstacle, target.to_local * x);
+            nearest.clearance = std::min(nearest.clearance, hit.distance);
             if (hit.distance > radius || hit.distance >= nearest.distance) continue;
             nearest.on_primitive = hit;
             nearest.distance = hit.distance;
         }
         nearest.target = &target;
     }
+    nearest.clearance = std::min(nearest.clearance, nearest.distance);
     return nearest;
 }
 
@@ -183,6 +190,7 @@ void clear_row(SurfaceContacts& contacts, Eigen::Index i) {
 
 void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
                SurfaceContacts& contacts) {
+    contacts.clearance[i] = nearest.clearance;
     if (!nearest.target) return clear_row(contacts, i);
     const Obstacle& obstacle = *nearest.target->obstacle;
     Vec3 point[2], normal[2];
@@ -220,6 +228,7 @@ void resize(SurfaceContacts& contacts, Eigen::Index count) {
                          &contacts.normal0, &contacts.normal1})
         rows->resize(count, 3);
     contacts.distance.resize(count);
+    contacts.clearance.resize(count);
     contacts.ridges.clear();
 }
 

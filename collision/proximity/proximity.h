@@ -29,6 +29,8 @@ struct SurfaceContacts {
     Points point0, point1;    ///< |V| x 3 (m): the surface point at t and at t + dt
     Points normal0, normal1;  ///< |V| x 3: unit face normal there (outward) at t and at t + dt
     VectorX distance;         ///< |V| (m): signed distance at t, negative inside; +inf: none
+    VectorX clearance;        ///< |V| (m): no surface is nearer. The distance, or else the radius;
+                              ///< more where there are no meshes: primitives are seen from afar
     std::vector<RidgeContact> ridges;  ///< faces and edges over ridges; a query leaves it empty
 
     bool has(Eigen::Index i) const { return obstacle[static_cast<size_t>(i)] >= 0; }

@@ -88,18 +88,19 @@ bool SurfaceSamples::has_changed(int sample, const std::vector<char>* changed) c
 bool SurfaceSamples::skins_part(int sample, const SurfaceContacts& contacts) const {
     const auto at = corners(sample).vertex;
     const auto part = [&](int a, int b) {
-        return contacts.normal1.row(a).dot(contacts.normal1.row(b)) < 0.0 &&
-               std::min(contacts.distance[a], contacts.distance[b]) < near_enough;
+        return std::min(contacts.distance[a], contacts.distance[b]) < near_enough &&
+               contacts.normal1.row(a).dot(contacts.normal1.row(b)) < 0.0;
     };
     return part(at[0], at[1]) || part(at[1], at[2]) || part(at[2], at[0]);
 }
 
 double SurfaceSamples::vouched_by_vertices(int sample, const Points& x,
-                                           const VectorX& distance) const {
+                                           const VectorX& clearance) const {
     double bound = -m_radius;
     for (const int vertex : corners(sample).vertex) {
         const double away = (m_x.row(sample) - x.row(vertex)).norm();
-        bound = std::max(bound, std::min(distance[vertex], m_radius) - away);
+        bound = std::max(bound, clearance[vertex] - away);
+        if (bound >= 0.0) break;  // enough to be sure
     }
     return bound;
 }
@@ -134,8 +135,7 @@ void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundar
         for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
     }
     proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, {&m_ignored});
-    for (const int sample : m_rows)
-        m_distance[sample] = std::min(m_contacts.distance[sample], m_radius);
+    for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
 }
 
 void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,
@@ -149,7 +149,7 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
         m_x.row(sample) = corners(sample).position(x);
         m_parted[k] = skins_part(sample, contacts);
         m_distance[sample] =
-            m_parted[k] ? -m_radius : vouched_by_vertices(sample, x, contacts.distance);
+            m_parted[k] ? -m_radius : vouched_by_vertices(sample, x, contacts.clearance);
         m_unsure[k] = m_distance[sample] < -depth;
     };
     update_all(0, face_count(), update);

@@ -64,7 +64,7 @@ class SurfaceSamples {
     void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last);
     bool has_changed(int sample, const std::vector<char>* changed) const;
     bool skins_part(int sample, const SurfaceContacts& contacts) const;
-    double vouched_by_vertices(int sample, const Points& x, const VectorX& distance) const;
+    double vouched_by_vertices(int sample, const Points& x, const VectorX& clearance) const;
     double vouched_by_faces(int edge) const;
 
     Faces m_faces;

@@ -9,11 +9,13 @@ namespace cloth {
 constexpr double relaxation = 1.5;       // of the Jacobi steps; they converge below 2
 constexpr double good_enough = 1e-6;     // m: lifts below this end the sweeps
 constexpr double planes_per_vertex = 8;  // reserved
+constexpr double rounding = 1e-9;        // m: that idle planes keep clear
 
 PlanePush::PlanePush(VectorX inverse_masses)
     : m_inverse_masses(std::move(inverse_masses)),
       m_shares(static_cast<size_t>(m_inverse_masses.size()), 0),
-      m_before(Points::Zero(m_inverse_masses.size(), 3)) {
+      m_before(Points::Zero(m_inverse_masses.size(), 3)),
+      m_last(m_before) {
     m_planes.reserve(static_cast<size_t>(planes_per_vertex) * m_shares.size());
     m_touched.reserve(m_shares.size());
 }
@@ -58,27 +60,44 @@ double PlanePush::share_out(const Points& x) {
             const int i = plane.vertex[k];
             if (m_shares[static_cast<size_t>(i)]++ == 0) {
                 m_touched.push_back(i);
-                m_before.row(i) = x.row(i);
+                m_before.row(i) = m_last.row(i) = x.row(i);
             }
         }
     }
     for (Plane& plane : m_planes)
-        for (size_t k = 0; k < plane.count; ++k)
+        for (size_t k = 0; k < plane.count; ++k) {
             plane.mobility += plane.weight[k] * plane.weight[k] *
                               m_inverse_masses[plane.vertex[k]] *
                               m_shares[static_cast<size_t>(plane.vertex[k])];
+            plane.reach += std::abs(plane.weight[k]);
+        }
+    m_path = 0.0;
     return deepest;
 }
 
-/// Returns the largest lift (m).
+/// How far the vertex that moved farthest did since the last call (m).
+double PlanePush::farthest_motion(const Points& x) {
+    double squared = 0.0;
+    for (const int i : m_touched) {
+        squared = std::max(squared, (x.row(i) - m_last.row(i)).squaredNorm());
+        m_last.row(i) = x.row(i);
+    }
+    return std::sqrt(squared);
+}
+
+/// Returns the largest lift (m). A plane that lifts nothing is not looked at again before its
+/// point may have come down to it: most planes keep lengths of edges that nothing lengthens.
 double PlanePush::sweep(Points& x) {
     double largest = 0.0;
     for (Plane& plane : m_planes) {
-        if (!(plane.mobility > 0.0)) continue;
-        const double lift = relaxation * missing(plane, x);
+        if (m_path < plane.idle_until || !(plane.mobility > 0.0)) continue;
+        const double below = missing(plane, x);
+        const double lift = relaxation * below;
         plane.change = std::max(lift / plane.mobility, -plane.multiplier);
         plane.multiplier += plane.change;
         largest = std::max(largest, std::abs(plane.change) * plane.mobility);
+        if (plane.multiplier == 0.0 && plane.change == 0.0)
+            plane.idle_until = m_path - (below + rounding) / plane.reach;
     }
     for (const Plane& plane : m_planes) {
         if (plane.change == 0.0) continue;
@@ -86,6 +105,7 @@ double PlanePush::sweep(Points& x) {
             x.row(plane.vertex[k]) += plane.weight[k] * m_inverse_masses[plane.vertex[k]] *
                                       plane.change * plane.normal.transpose();
     }
+    m_path += farthest_motion(x);
     return largest;
 }
 

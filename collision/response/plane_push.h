@@ -50,11 +50,14 @@ class PlanePush {
         double mobility = 0.0;    ///< lift per multiplier, of vertices shared out (1/kg)
         double multiplier = 0.0;  ///< (kg m)
         double change = 0.0;      ///< of the multiplier in this sweep
+        double reach = 0.0;       ///< how far its point moves where each vertex moves by 1
+        double idle_until = 0.0;  ///< m_path before which it lifts nothing (m)
     };
 
     double missing(const Plane& plane, const Points& x) const;
     double share_out(const Points& x);
     double sweep(Points& x);
+    double farthest_motion(const Points& x);
     void limit(double allowed, Points& x) const;
 
     VectorX m_inverse_masses;
@@ -62,6 +65,8 @@ class PlanePush {
     std::vector<int> m_touched;
     std::vector<int> m_shares;  ///< |V|: planes of a vertex
     Points m_before;            ///< |V| x 3 (m)
+    Points m_last;              ///< |V| x 3 (m): after the last sweep
+    double m_path = 0.0;        ///< no vertex has moved farther in the sweeps so far (m)
 };
 
 }  // namespace cloth

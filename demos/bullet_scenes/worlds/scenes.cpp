@@ -26,15 +26,15 @@ const std::vector<SceneRecipe>& bulletsDemos() {
     return recipes;
 }
 
-bool isBulletsDemo(const SceneRecipe& recipe) {
-    const auto& demos = bulletsDemos();
-    return std::any_of(demos.begin(), demos.end(), [&](const SceneRecipe& demo) {
-        return std::strcmp(demo.name, recipe.name) == 0;
+bool isSmallScene(const SceneRecipe& recipe) {
+    const auto& small = smallScenes();
+    return std::any_of(small.begin(), small.end(), [&](const SceneRecipe& one) {
+        return std::strcmp(one.name, recipe.name) == 0;
     });
 }
 
 const std::vector<SceneRecipe>& sceneRecipes() {
     static const auto recipes =
-        joined({[] { return smallScenes(); }, [] { return bulletsDemos(); }});
+        joined({[] { return smallScenes(); }, [] { return bulletsDemos(); }, manySheets});
     return recipes;
 }

@@ -24,9 +24,12 @@ const std::vector<SceneRecipe>& sceneRecipes();
 
 /// What cloth is for, each small enough to look at.
 const std::vector<SceneRecipe>& smallScenes();
+bool isSmallScene(const SceneRecipe& recipe);
 /// The scenes of Bullet's SoftDemo and SimpleCloth that have cloth: their sizes, masses, settings.
 const std::vector<SceneRecipe>& bulletsDemos();
-bool isBulletsDemo(const SceneRecipe& recipe);
+
+/// What cost is judged by.
+std::vector<SceneRecipe> manySheets();
 
 /// The parts of smallScenes().
 std::vector<SceneRecipe> hangingScenes();

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "data/core/primitives.h"
+#include "gnn/physics/stepper/guess.h"
+
 namespace cloth {
 namespace {
 
@@ -58,6 +61,47 @@ double primitive_motion(const Obstacle& shape, const Box& box, const Vec3& shift
     return (to - from - shift).norm() + std::abs(turn.angle()) * size;
 }
 
+/// The longest edge as it is now (m).
+double longest_edge(const Garment& garment, const Points& x) {
+    double squared = 0.0;
+    for (const auto& [a, b] : garment.edges())
+        squared = std::max(squared, (x.row(a) - x.row(b)).squaredNorm());
+    return std::sqrt(squared);
+}
+
+/// Of the vertices over a primitive, where they or their faces may come near it: a garment that
+/// swings past it has parts that are slow, and others that are far away.
+double motion_over(const Obstacle& shape, const Garment& garment, const Points& x0,
+                   const Points& x1) {
+    if (!is_usable_primitive(shape)) return 0.0;
+    const Pose to_local0 = shape.pose0.inverse(), to_local1 = shape.pose1.inverse();
+    const auto squared_way = [&](Eigen::Index i) {
+        return (to_local1 * x1.row(i).transpose() - to_local0 * x0.row(i).transpose())
+            .squaredNorm();
+    };
+    double longest = 0.0, farthest = 0.0;  // m²
+    for (Eigen::Index i = 0; i < x0.rows(); ++i) longest = std::max(longest, squared_way(i));
+    // No point of a triangle is farther from all corners than this share of its longest edge.
+    const double near = std::sqrt(longest) + reach + longest_edge(garment, x0) / std::sqrt(3.0);
+    for (Eigen::Index i = 0; i < x0.rows(); ++i) {
+        const double own = squared_way(i);
+        if (own > farthest &&
+            closest_on_primitive(shape, to_local0 * x0.row(i).transpose()).distance < near)
+            farthest = own;
+    }
+    return std::sqrt(farthest);
+}
+
+/// Of pins over the vertices next to them, which drag what they are pulled away from.
+double pin_motion_over_neighbours(const Garment& garment, const Points& x0, const Points& x1) {
+    double farthest = 0.0;
+    for (const auto& [a, b] : garment.edges())
+        if (garment.is_pinned()[static_cast<size_t>(a)] !=
+            garment.is_pinned()[static_cast<size_t>(b)])
+            farthest = std::max(farthest, (x1.row(a) - x0.row(a) - x1.row(b) + x0.row(b)).norm());
+    return farthest;
+}
+
 /// How far limits of goals pull vertices that move along with the garment.
 double goal_motion(const Garment& garment, const Boundary& boundary, const Vec3& shift,
                    const Points& x) {
@@ -77,17 +121,23 @@ double relative_motion(const Garment& garment, const Boundary& boundary, double 
     if (state.x.rows() == 0) return 0.0;
     const Vec3 shift = dt * state.v.colwise().mean().transpose();
     const Box box = swept_box(state, shift);
-    double farthest = 0.0;
-    for (size_t p = 0; p < garment.pins().size(); ++p) {
-        const Vec3 motion =
-            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) - state.x.row(garment.pins()[p]);
-        farthest = std::max(farthest, (motion - shift).norm());
+    Points ahead = state.x + dt * state.v;
+    place_pins(garment, boundary, ahead);
+    double pins = 0.0;
+    for (const int pin : garment.pins())
+        pins = std::max(pins, (ahead.row(pin) - state.x.row(pin) - shift.transpose()).norm());
+    if (pins > 0.0) pins = std::min(pins, pin_motion_over_neighbours(garment, state.x, ahead));
+    double farthest = std::max(pins, goal_motion(garment, boundary, shift, state.x));
+    for (const Obstacle& obstacle : boundary.obstacles) {
+        const bool is_mesh = obstacle.shape == ObstacleShape::mesh;
+        const double motion =
+            is_mesh ? mesh_motion(obstacle, box, shift) : primitive_motion(obstacle, box, shift);
+        if (motion <= farthest) continue;
+        farthest = is_mesh
+                       ? motion
+                       : std::max(farthest,
+                                  std::min(motion, motion_over(obstacle, garment, state.x, ahead)));
     }
-    farthest = std::max(farthest, goal_motion(garment, boundary, shift, state.x));
-    for (const Obstacle& obstacle : boundary.obstacles)
-        farthest = std::max(farthest, obstacle.shape == ObstacleShape::mesh
-                                          ? mesh_motion(obstacle, box, shift)
-                                          : primitive_motion(obstacle, box, shift));
     return farthest;
 }
 

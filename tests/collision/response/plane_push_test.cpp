@@ -11,6 +11,42 @@ using namespace test;
 
 constexpr double third = 1.0 / 3.0;
 
+struct SlowPlane {
+    std::array<int, 3> vertex;
+    std::array<double, 3> weight;
+    Vec3 normal;
+    double height, mobility = 0.0, multiplier = 0.0, change = 0.0;
+
+    double missing(const Points& x) const {
+        double at = 0.0;
+        for (size_t k = 0; k < 3; ++k)
+            if (weight[k] != 0.0) at += weight[k] * x.row(vertex[k]).dot(normal);
+        return height - at;
+    }
+};
+
+/// The sweeps of PlanePush, every plane in each of them.
+void solve_slowly(std::vector<SlowPlane> planes, const VectorX& inverse_masses, int sweeps,
+                  Points& x) {
+    std::vector<int> shares(size_t(x.rows()), 0);
+    for (const SlowPlane& plane : planes)
+        for (size_t k = 0; k < 3; ++k) shares[size_t(plane.vertex[k])] += plane.weight[k] != 0.0;
+    for (SlowPlane& plane : planes)
+        for (size_t k = 0; k < 3; ++k)
+            plane.mobility += plane.weight[k] * plane.weight[k] * inverse_masses[plane.vertex[k]] *
+                              shares[size_t(plane.vertex[k])];
+    for (int sweep = 0; sweep < sweeps; ++sweep) {
+        for (SlowPlane& plane : planes) {
+            plane.change = std::max(1.5 * plane.missing(x) / plane.mobility, -plane.multiplier);
+            plane.multiplier += plane.change;
+        }
+        for (const SlowPlane& plane : planes)
+            for (size_t k = 0; k < 3; ++k)
+                x.row(plane.vertex[k]) += plane.weight[k] * inverse_masses[plane.vertex[k]] *
+                                          plane.change * plane.normal.transpose();
+    }
+}
+
 TEST(PlanePush, LiftsTheCentreOfAFaceByItsVertices) {
     PlanePush push(VectorX::Ones(4));
     Points x = Points::Zero(4, 3);
@@ -60,6 +96,32 @@ TEST(PlanePush, AFaceAndAVertexPartWithoutMomentum) {
     EXPECT_NEAR(height, 0.01, 1e-5);
     EXPECT_NEAR(momentum, 0.0, 1e-15);
     EXPECT_EQ(push.moved(), (std::vector<int>{0, 1, 2, 3}));
+}
+
+// Of 300 planes most lift nothing at first, and many do after some sweeps.
+TEST(PlanePush, PlanesThatAreIdleForNowComeBackInTime) {
+    constexpr int vertices = 60, planes = 300, sweeps = 25;
+    std::mt19937 random(5);
+    std::uniform_int_distribution<int> any(0, vertices - 1);
+    std::uniform_real_distribution<double> height(-0.05, 0.01);
+    const VectorX inverse = VectorX::LinSpaced(vertices, 0.5, 2.0);
+    PlanePush push(inverse);
+    std::vector<SlowPlane> slow;
+    const Points before = random_points(random, vertices, 1e-3),
+                 normals = random_points(random, planes, 1.0);
+    for (int p = 0; p < planes; ++p) {
+        const Vec3 normal = Vec3(normals.row(p)).normalized();
+        const std::array<int, 3> at{any(random), any(random), any(random)};
+        const std::array<double, 3> weight = p % 2 == 0 ? std::array<double, 3>{third, third, third}
+                                                        : std::array<double, 3>{1.0, -1.0, 0.0};
+        slow.push_back({at, weight, normal, height(random)});
+        push.add(at, weight, normal, slow.back().height);
+    }
+    Points x = before, expected = before;
+    push.solve(sweeps, 1e6, x);
+    solve_slowly(slow, inverse, sweeps, expected);
+    EXPECT_GT((expected - before).rowwise().norm().maxCoeff(), 0.01);
+    EXPECT_LT((x - expected).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(PlanePush, PointsAboveTheirPlanesStay) {

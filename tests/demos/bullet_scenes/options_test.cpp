@@ -65,7 +65,8 @@ TEST(BulletScenes, HaveNamesOfTheirOwn) {
     EXPECT_EQ(names, (std::set<std::string>{"hanging", "attached", "flag", "sphere", "box_edge",
                                             "capsule", "mesh", "stack", "ball", "mixed"}));
     for (const SceneRecipe& recipe : bulletsDemos()) names.insert(recipe.name);
-    EXPECT_EQ(names.size(), smallScenes().size() + bulletsDemos().size());
+    for (const SceneRecipe& recipe : manySheets()) names.insert(recipe.name);
+    EXPECT_EQ(names.size(), smallScenes().size() + bulletsDemos().size() + manySheets().size());
     EXPECT_EQ(names.size(), sceneRecipes().size());
 }
 

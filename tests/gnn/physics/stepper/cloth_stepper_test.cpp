@@ -156,6 +156,51 @@ TEST_F(Guard, PinsThatJumpAreCutToo) {
     EXPECT_EQ(m_state.x.row(0), m_boundary.pin_targets.row(0));
 }
 
+/// A sheet that hangs by one edge and swings about it: the free end is twice as fast as the mean.
+struct Swinging {
+    explicit Swinging(const TriMesh& mesh, double mean_motion)
+        : garment("sheet", mesh, Fabric::soft_cotton(), upper_edge(mesh)),
+          state(ClothState::at_rest(garment)) {
+        state.v.col(0) = (2.0 * mean_motion / 0.8 / dt) * (0.4 - state.x.col(2).array());
+        boundary.pin_targets.resize(static_cast<Eigen::Index>(garment.pins().size()), 3);
+        for (size_t p = 0; p < garment.pins().size(); ++p)
+            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) = state.x.row(garment.pins()[p]);
+    }
+    static std::vector<int> upper_edge(const TriMesh& mesh) {
+        std::vector<int> pins;
+        for (int i = 0; i < static_cast<int>(mesh.vertices.rows()); ++i)
+            if (mesh.vertices(i, 2) > 0.399) pins.push_back(i);
+        return pins;
+    }
+    double motion() const { return relative_motion(garment, boundary, dt, state); }
+
+    Garment garment;
+    ClothState state;
+    Boundary boundary;
+};
+
+TEST_F(Guard, ASheetThatSwingsFromItsPinsIsNotFast) {
+    Swinging swinging(upright(), 0.15);
+    ASSERT_GT(swinging.garment.pins().size(), 5u);
+    EXPECT_LT(swinging.motion(), 0.03) << "the pins, over the vertices next to them";
+    Obstacle ground;
+    ground.shape = ObstacleShape::plane;
+    ground.pose0.translation().y() = ground.pose1.translation().y() = -3.0;
+    swinging.boundary.obstacles = {ground};
+    EXPECT_LT(swinging.motion(), 0.03) << "nothing of it can reach the ground";
+    ground.pose0.translation().y() = ground.pose1.translation().y() = -0.45;
+    swinging.boundary.obstacles = {ground};
+    EXPECT_NEAR(swinging.motion(), 0.15, 0.01);
+}
+
+TEST_F(Guard, WhatTheFreeEndOfASwingingSheetMayHitIsFast) {
+    Swinging swinging(upright(), 0.15);
+    Obstacle sphere = ball(0.25, 0.25);
+    sphere.pose0.translation().z() = sphere.pose1.translation().z() = -0.4;
+    swinging.boundary.obstacles = {sphere};
+    EXPECT_NEAR(swinging.motion(), 0.15, 0.01);
+}
+
 TEST_F(Guard, AFailedStepIsMadeInParts) {
     ClothStepper stepper(m_garment, std::make_unique<Failing>(m_garment));
     m_boundary.gravity = Vec3(0, -9.81, 0);
