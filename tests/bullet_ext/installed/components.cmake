@@ -44,6 +44,6 @@ int main() { return cloth::Body::load_default().faces()->rows() > 1000 ? 0 : 1; 
 ")
 only("core" ${WORK}/core.cpp fastcloth-core "${gpl}|assimp|minizip|fcl|gomp|Bullet")
 only("bullet" ${CMAKE_CURRENT_LIST_DIR}/programs/only_bullet.cpp fastcloth-bullet
-     "${gpl}|assimp|minizip|fcl" OpenMP)
+     "${gpl}|assimp|minizip" fcl OpenMP)
 only("bullet model" ${SOURCE}/demos/hello_cloth.cpp fastcloth "${gpl}|assimp|minizip" fcl OpenMP)
 only("body" ${WORK}/body.cpp fastcloth-body "${gpl}|fcl|gomp|Bullet" assimp)
