@@ -241,11 +241,10 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// Lets what is shown of a body fade from where its cloth is simulated to where its goals are,
     /// or back: see cloth::SkinBlend. The cloth itself is not changed by it, and goes on.
     ///
-    ///     solver.fadeToSkin(cape, 1.0, 0.5);    // skinned in half a second
-    ///     ...
-    ///     solver.setGoals(cape, goals, dt);     // before each step, as for limits
+    ///     solver.fadeToSkin(shirt, 1.0, 0.5);   // skinned in half a second
+    ///     solver.setGoals(shirt, goals, dt);    // before each step, as for limits
     ///     world.stepSimulation(dt);
-    ///     draw(solver.shownPositions(cape));    // in place of the nodes
+    ///     draw(solver.shownPositions(shirt));   // in place of the nodes
     ///
     /// What follows the body, see follow(), follows what is shown. No vertex of it is inside an
     /// obstacle. The body need not have limits. A body that Bullet steps is shown as it is.

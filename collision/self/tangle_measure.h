@@ -8,9 +8,8 @@
 
 namespace cloth {
 
-/// How badly a garment is tangled, as a length (m) that is 0 only without tangles:
-///
-///     P(x) = L + A / r,   r = 1 cm
+/// How badly a garment is tangled, as a length (m) that is 0 only without tangles: P = L + A / r
+/// with r = 1 cm.
 ///
 /// L is the length of the lines along which surfaces pass through each other (Volino and
 /// Magnenat-Thalmann 2006, "Resolving surface collisions through intersection contour
