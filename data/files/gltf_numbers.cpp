@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int floats = 5126, bytes8 = 5121, bytes16 = 5123;  // component types of glTF
+constexpr int type_float = 5126, bytes8 = 5121, bytes16 = 5123;  // component types of glTF
 
 std::uint32_t word_at(const std::string& bytes, size_t at) {
     std::uint32_t word = 0;
@@ -144,7 +144,8 @@ std::vector<float> GltfNumbers::read(size_t accessor, int components, const std:
     const size_t component = index(entry, "componentType", place);
     const bool is_normalised =
         entry.contains("normalized") && entry["normalized"].is_boolean() && entry["normalized"];
-    if (component != floats && !(is_normalised && (component == bytes8 || component == bytes16)))
+    if (component != type_float &&
+        !(is_normalised && (component == bytes8 || component == bytes16)))
         fail(place, "its numbers are neither floats nor normalised bytes or 16-bit numbers",
              "store it as 32-bit floats");
     if (entry.contains("sparse") || !entry.contains("bufferView"))
@@ -153,7 +154,7 @@ std::vector<float> GltfNumbers::read(size_t accessor, int components, const std:
     const json& view = this->entry("bufferViews", index(entry, "bufferView", place), place);
     const std::string& bytes = buffer(index(view, "buffer", place), place);
 
-    const size_t size = component == floats ? 4 : component == bytes16 ? 2 : 1;
+    const size_t size = component == type_float ? 4 : component == bytes16 ? 2 : 1;
     const size_t packed = size * static_cast<size_t>(components);
     const size_t stride = view.contains("byteStride") ? index(view, "byteStride", place) : packed;
     const size_t view_begin = view.contains("byteOffset") ? index(view, "byteOffset", place) : 0;
@@ -175,7 +176,7 @@ std::vector<float> GltfNumbers::read(size_t accessor, int components, const std:
             std::uint8_t byte = 0;
             std::uint16_t word = 0;
             float number = 0.0f;
-            if (component == floats)
+            if (component == type_float)
                 std::memcpy(&number, at, sizeof number);
             else if (component == bytes16)
                 std::memcpy(&word, at, sizeof word), number = static_cast<float>(word) / 65535.0f;
