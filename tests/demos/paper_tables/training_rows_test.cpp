@@ -10,6 +10,7 @@
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
 #include "render/replaced_file.h"
+#include "tests/demos/train_series/stand_in_training.h"
 
 namespace cloth::paper_training_rows_test {
 
@@ -19,37 +20,22 @@ using Json = nlohmann::ordered_json;
 
 const auto quiet = [](int, int, const std::string&) {};
 
-class TrainingRows : public ::testing::Test {
+class TrainingRows : public test::StandInTraining {
  protected:
     void SetUp() override {
-        m_folder = ::testing::TempDir() + "paper_training_" +
-                   ::testing::UnitTest::GetInstance()->current_test_info()->name();
-        std::filesystem::remove_all(m_folder);
-        std::filesystem::create_directories(m_folder);
+        StandInTraining::SetUp();
         m_settings.weights = m_folder;
-        m_settings.train = m_folder + "/train";
+        m_settings.train = train();
         m_settings.work = m_folder + "/trainings";
         m_settings.iterations = 40;
     }
-    void TearDown() override { std::filesystem::remove_all(m_folder); }
 
-    /// Stands for `train`; notes its arguments.
-    void program(const std::string& text) {
-        write_text_file(m_settings.train, "#!/bin/sh\necho \"$*\" >> '" + runs() + "'\n" + text);
-        std::filesystem::permissions(m_settings.train, std::filesystem::perms::owner_all);
-    }
-    std::string runs() const { return m_folder + "/runs"; }
-    int run_count() const {
-        const std::string text = read_file(runs());
-        return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-    }
     void metrics(const std::string& rows) {
         write_text_file(
             m_folder + "/fast.csv",
             "iteration,gap_training_median,gap_tshirt_median,gap_sheet_median\n" + rows);
     }
 
-    std::string m_folder;
     TrainingRowSettings m_settings;
 };
 

@@ -10,6 +10,7 @@
 #include "demos/train_series/metrics_row.h"
 #include "demos/train_series/series_run.h"
 #include "render/replaced_file.h"
+#include "tests/demos/train_series/stand_in_training.h"
 
 namespace cloth::train_series_test {
 namespace {
@@ -22,36 +23,21 @@ touch "$out/checkpoint.pt"
 printf 'iteration,gap,empty,stretch\n1,0.9,,1\n%s,0.%s,,1.25\n' "$n" "$seed" > "$out/metrics.csv"
 )";
 
-/// A folder of its own for each test, with a program that stands for `train`: it writes its
-/// arguments to a log of all runs, and metrics that end with the iteration that it was asked for.
-class TrainSeries : public ::testing::Test {
+/// The program writes metrics that end with the iteration that it was asked for.
+class TrainSeries : public test::StandInTraining {
  protected:
     void SetUp() override {
-        m_folder = ::testing::TempDir() + "train_series_" +
-                   ::testing::UnitTest::GetInstance()->current_test_info()->name();
-        std::filesystem::remove_all(m_folder);
-        std::filesystem::create_directories(m_folder);
+        StandInTraining::SetUp();
         m_settings.trainings = m_folder + "/trainings";
         m_settings.iterations = 7;
-        m_settings.train = m_folder + "/train";
+        m_settings.train = train();
         program(trains);
     }
-    void TearDown() override { std::filesystem::remove_all(m_folder); }
 
-    void program(const std::string& text) {
-        write_text_file(m_settings.train, "#!/bin/sh\necho \"$*\" >> '" + runs() + "'\n" + text);
-        std::filesystem::permissions(m_settings.train, std::filesystem::perms::owner_all);
-    }
-    std::string runs() const { return m_folder + "/runs"; }
-    int run_count() const {
-        const std::string text = read_file(runs());
-        return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
-    }
     nlohmann::ordered_json run() {
         return run_series(m_series, m_settings, [](const std::string&) {});
     }
 
-    std::string m_folder;
     SeriesSettings m_settings;
     TrainingSeries m_series{"test",
                             "a test",

@@ -9,26 +9,8 @@ unset RANK WORLD_SIZE MASTER_ADDR MASTER_PORT
 rm -rf "$out"
 mkdir -p "$out"
 
-run() {
-    folder=$1
-    shift
-    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 60 --save-every 0 \
-        --validation-share 0 --batch 2 --out "$out/$folder" "$@" 2>>"$out/$folder.log"
-}
-
-fail() {
-    echo "$1"
-    cat "$out"/*.log
-    exit 1
-}
-
-await_checkpoint() {
-    for _ in $(seq 600); do
-        if [ "$out/killed/checkpoint.pt" -nt "$out/before" ]; then return 0; fi
-        sleep 0.1
-    done
-    fail "no checkpoint within a minute"
-}
+. "$(dirname "$0")/trainings.sh"
+options="$options --iterations 60 --batch 2"
 
 lives() {
     grep -q "^State:.*[^Z] (" "/proc/$1/status" 2>/dev/null
@@ -52,13 +34,8 @@ cmp "$out/straight/weights.safetensors" "$out/environment/weights.safetensors"
 
 # One of those that train is killed, or the one that watches over them.
 for victim in trainer watcher; do
-    touch "$out/before"
-    sleep 0.05
-    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 60 --save-every 0 \
-        --validation-share 0 --batch 2 --out "$out/killed" --processes 2 --resume \
-        2>>"$out/killed.log" &
-    watcher=$!
-    await_checkpoint
+    start_killed --processes 2
+    watcher=$training
     children=$(cat "/proc/$watcher/task/$watcher/children")
     if [ $victim = trainer ]; then
         kill -KILL "${children%% *}"

@@ -7,33 +7,13 @@ out=$2
 rm -rf "$out"
 mkdir -p "$out"
 
-run() {
-    folder=$1
-    shift
-    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 150 --save-every 0 \
-        --validation-share 0 --nice 1 --out "$out/$folder" "$@" 2>>"$out/$folder.log"
-}
+. "$(dirname "$0")/trainings.sh"
+options="$options --iterations 150"
 
-# Waits until the training has saved a checkpoint since the last call.
-await_checkpoint() {
-    for _ in $(seq 600); do
-        if [ "$out/killed/checkpoint.pt" -nt "$out/before" ]; then return 0; fi
-        sleep 0.1
-    done
-    echo "no checkpoint within a minute"
-    cat "$out/killed.log"
-    exit 1
-}
-
-run alone
+run alone --nice 1
 
 for signal in KILL TERM; do
-    touch "$out/before"
-    sleep 0.05
-    "$train" --width 16 --steps 2 --garment-share 0 --pool 4 --iterations 150 --save-every 0 \
-        --validation-share 0 --resume --out "$out/killed" 2>>"$out/killed.log" &
-    training=$!
-    await_checkpoint
+    start_killed
     kill -$signal "$training"
     status=0
     wait "$training" || status=$?
@@ -49,7 +29,7 @@ if run killed; then
     exit 1
 fi
 
-run killed --resume
+run killed --resume --nice 1
 cmp "$out/alone/weights.safetensors" "$out/killed/weights.safetensors"
 grep -q "left, done on" "$out/alone.log"
 echo "equal bits"

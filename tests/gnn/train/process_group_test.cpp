@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "data/core/errors.h"
-#include "gnn/train/trainer.h"
+#include "tests/gnn/train/tiny_training.h"
 
 namespace cloth::process_group_test {
 namespace {
@@ -113,23 +113,15 @@ TEST(ProcessGroup, RefusesAnEnvironmentThatMakesNoSense) {
 }
 
 TrainerSettings tiny(const std::string& name) {
-    TrainerSettings settings;
-    settings.model = ModelConfig::variant_named("fast");
-    settings.model.width = 16;
-    settings.model.steps = 4;
-    settings.recipe = Recipe::named("kicks", 16);
+    TrainerSettings settings = test::tiny_training("process_group_" + name, "kicks");
     settings.recipe.kicks.share = 0.5;
     settings.recipe.max_rollout = 2;
     settings.recipe.rollout_growth = 4;
-    settings.scenes.garment_share = 0.0;
-    settings.scenes.sheet_sizes = {60};
     settings.validation_share = 0.0;
     settings.iterations = 16;
     settings.pool = 3;
     settings.batch = 2;
     settings.freeze_statistics = 6;
-    settings.out = testing::TempDir() + "process_group_" + name;
-    std::filesystem::remove_all(settings.out);
     return settings;
 }
 

@@ -10,28 +10,13 @@
 #include <sstream>
 
 #include "data/core/errors.h"
+#include "tests/gnn/train/tiny_training.h"
 
 namespace cloth::trainer_test {
 namespace {
 
 TrainerSettings tiny(const std::string& name, const std::string& recipe = "quick") {
-    TrainerSettings settings;
-    settings.model = ModelConfig::variant_named("fast");
-    settings.model.width = 16;
-    settings.model.steps = 4;
-    settings.recipe = Recipe::named(recipe, 16);
-    settings.scenes.garment_share = 0.0;
-    settings.scenes.sheet_sizes = {60};
-    settings.validation.garment_states = 0;
-    settings.validation.sheet_states = 4;
-    settings.rollouts.sheet_vertices = 60;
-    settings.rollouts.frames = 4;
-    settings.iterations = 40;
-    settings.pool = 4;
-    settings.freeze_statistics = 15;
-    settings.out = testing::TempDir() + "trainer_" + name;
-    std::filesystem::remove_all(settings.out);
-    return settings;
+    return test::tiny_training("trainer_" + name, recipe);
 }
 
 std::vector<float> numbers(Trainer& trainer) {
