@@ -190,6 +190,7 @@ void applySlidingFriction(btSoftBody& body, const SlidingStep& step) {
         }
     }
     limitStretch(step, x, motion - motionOf(step));
+    if (Points& slip = step.to.stick.slip; slip.rows() == x.rows()) slip += step.to.x - x;
 }
 
 }  // namespace cloth

@@ -50,6 +50,7 @@ SoftBodyStep::SoftBodyStep(btSoftBody& body, std::unique_ptr<const Garment> garm
 
 void SoftBodyStep::restart() {
     const int count = m_body.m_nodes.size();
+    m_shown.stick = {};
     m_shown.x = nodePositions(m_body);
     m_shown.v.resize(count, 3);
     m_written.resize(static_cast<size_t>(count) * 6);
@@ -346,6 +347,7 @@ void SoftBodyStep::carry(double h) {
     for (size_t p = 0; p < pins.size(); ++p)
         m_shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
     m_shown.v = (m_shown.x - before) / m_h;
+    m_shown.stick = {};
     m_cloth_step.valid = false;
     m_depth = 0.0;
     writeNodes();
@@ -432,6 +434,7 @@ void SoftBodyStep::showClothStep() {
         m_shown.x = m_cloth_step.from.x + s * (m_cloth_step.to.x - m_cloth_step.from.x);
         m_shown.v = m_cloth_step.from.v + s * (m_cloth_step.to.v - m_cloth_step.from.v);
         m_shown.time = m_cloth_step.from.time + s * m_cloth_step.length;
+        m_shown.stick = {};
     }
     const std::vector<int>& pins = m_garment->pins();
     for (size_t p = 0; p < pins.size(); ++p)

@@ -8,6 +8,7 @@ struct SelfContactSettings {
     double thickness = 0.0;  ///< distance that cloth keeps from cloth (m), 1e-3 to 2e-2; 0: off.
                              ///< Above half an edge's length folds become stiff
     double weight = 5e5;     ///< w in w max(0, thickness - d)^3 per vertex (N/m^2), 1e3 to 1e6
+    double friction = 0.3;   ///< Coulomb coefficient between layers, 0 to 1.5
     int rounds =
         8;  ///< of search and push in contact projection, 0 to 100; 0: no contact projection
     /// What untangling may spend on stretching and lifting the cloth, per length of a tangle (N,

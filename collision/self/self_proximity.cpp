@@ -28,6 +28,7 @@ Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, c
 SelfProximity::SelfProximity(const Garment& garment, double thickness)
     : m_elements(garment),
       m_faces(garment.rest().vertices, garment.rest().faces),
+      m_regions(garment),
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
       m_thickness(thickness) {
@@ -48,7 +49,7 @@ bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const 
     if (!points.facing || !(points.squared > 0.0)) return false;
     const Vec3 shift = combine(elements, points.weight, motion);
     if (!(least_squared(points.offset, shift) <= reach * reach)) return false;
-    if (near_at_rest(elements)) return false;
+    if (!m_regions.contain(elements, points, x) || near_at_rest(elements)) return false;
     const double distance = std::sqrt(points.squared);
     pair = {elements, points.weight, points.offset / distance, distance};
     return true;

@@ -4,6 +4,7 @@
 
 #include "collision/self/element_bounds.h"
 #include "collision/self/face_pairs.h"
+#include "collision/self/offset_regions.h"
 #include "collision/self/self_elements.h"
 
 namespace cloth {
@@ -34,9 +35,10 @@ struct SelfPair {
 ///     proximity.find(state.x, dt * state.v, 4e-3 + slack, threads);
 ///     for (const SelfPair& pair : proximity.pairs()) { ... }
 ///
-/// Only elements that face each other make a pair: a vertex above a face, edges that cross. What is
-/// next to each other within the cloth does not, nor do elements of one connected piece that are
-/// nearer than the thickness in the rest pose, or elements that touch exactly: they have no sides.
+/// Only elements that face each other make a pair: a vertex above a face, edges that cross; and
+/// only where no neighbour of one of them is nearer, see OffsetRegions. What is next to each other
+/// within the cloth does not, nor do elements of one connected piece that are nearer than the
+/// thickness in the rest pose, or elements that touch exactly: they have no sides.
 class SelfProximity {
  public:
     /// @param thickness  (m)
@@ -58,6 +60,7 @@ class SelfProximity {
     SelfElements m_elements;
     FacePairs m_faces;
     ElementBounds m_bounds;
+    OffsetRegions m_regions;
     Points m_rest;             ///< |V| x 3 (m)
     std::vector<int> m_piece;  ///< |V|: connected piece
     double m_thickness;

@@ -40,6 +40,7 @@ StepReport SkinningStepper::step(const Boundary& boundary, double dt, ClothState
     if (!m_x.allFinite() || !m_v.allFinite()) return StepReport::failed();
     state.x = m_x;
     state.v = m_v;
+    state.stick = {};
     state.time += dt;
     return report;
 }

@@ -23,6 +23,25 @@ double normal_force(double mass, const Vec3& gravity, const Vec3& normal, double
     return std::max(carried, std::min(pressed, limit));
 }
 
+Vec3 tangential(const Vec3& v, const Vec3& normal) {
+    return v - normal.dot(v) * normal;
+}
+
+/// Slip (m), in units of s, that lasts: it carries 0.95 of the largest friction.
+constexpr double kept_slip = 3.0;
+
+/// What the last step left (m), as far as it stores no more energy than it did then.
+/// @param force  mu N (N)
+Vec3 slip_at_start(const StickMemory& memory, Eigen::Index vertex, const Vec3& normal, double force,
+                   double smooth_slip) {
+    if (vertex >= memory.slip.rows() || vertex >= memory.energy.size()) return Vec3::Zero();
+    const Vec3 slip = tangential(memory.slip.row(vertex), normal);
+    const double length = slip.norm(), stored = memory.energy[vertex] / force;
+    if (!(std::isfinite(length) && length > 0.0 && stored > 0.0)) return Vec3::Zero();
+    const double passive = std::sqrt(stored * (stored + 2.0 * smooth_slip));
+    return std::min({1.0, kept_slip * smooth_slip / length, passive / length}) * slip;
+}
+
 }  // namespace
 
 void FrictionEnergy::begin_step(const Garment& garment, const ClothState& state,
@@ -39,14 +58,23 @@ void FrictionEnergy::begin_step(const Garment& garment, const ClothState& state,
         const double depth = settings.contact_distance - contacts.distance[i];
         const double force =
             mu * normal_force(garment.masses()[i], boundary.gravity, normal, depth, settings);
+        if (!(force > 0.0)) continue;
         const Vec3 carried = contacts.point1.row(i) - contacts.point0.row(i);
-        if (force > 0.0)
-            m_sliders.push_back({i, normal, state.x.row(i).transpose() + carried, force});
+        const Vec3 slip = slip_at_start(state.stick, i, normal, force, m_slip);
+        m_sliders.push_back({i, normal, state.x.row(i).transpose() + carried - slip, force});
     }
 }
 
-static Vec3 tangential(const Vec3& v, const Vec3& normal) {
-    return v - normal.dot(v) * normal;
+void FrictionEnergy::remember(const Points& x, StickMemory& memory) const {
+    memory.slip.setZero(m_sliders.empty() ? 0 : x.rows(), 3);
+    memory.energy.setZero(memory.slip.rows());
+    for (const Slider& slider : m_sliders) {
+        const Vec3 slip =
+            tangential(x.row(slider.vertex).transpose() - slider.stick, slider.normal);
+        memory.slip.row(slider.vertex) = slip;
+        memory.energy[slider.vertex] =
+            slider.force * (std::sqrt(m_slip * m_slip + slip.squaredNorm()) - m_slip);
+    }
 }
 
 double FrictionEnergy::value(const Points& x) const {

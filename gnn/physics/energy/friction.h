@@ -23,7 +23,15 @@ struct FrictionSettings {
 ///     E = sum mu N_i (sqrt(s^2 + |u_i|^2) - s),
 ///
 /// where u_i is the tangential part of the vertex's motion since t relative to the surface point
-/// below it (its own motion from t to t + dt), s the smoothing slip, mu the obstacle's coefficient.
+/// below it (its own motion from t to t + dt) and of the slip that it began the step with, s the
+/// smoothing slip, mu the obstacle's coefficient.
+///
+/// The slip that a step begins with is what the last one ended with, up to 3 s: cloth that is
+/// pulled by less than 0.95 mu N stays where it is for good, and does not creep. It is shortened
+/// further where it would store more energy than it did at the end of the last step, because N or s
+/// have changed: a contact that is pressed in turns gives no energy. (The bristles of elastoplastic
+/// friction: Dupont, Hayward, Armstrong and Altpeter, Single state elastoplastic friction models,
+/// 2002.)
 ///
 /// N_i, fixed at t, is the larger of two estimates: the weight that the surface carries, m |g|
 /// max(0, n . up), exact for cloth lying on it; and the contact force 3 w depth^2 at x_t, which
@@ -44,11 +52,14 @@ class FrictionEnergy {
     /// Adds the Hessian (N/m), positive semi-definite by itself, to a matrix of `pattern`.
     void add_hessian(const Points& x, const BlockPattern& pattern, double* values) const;
 
+    /// What the next step begins with if this one ends at x.
+    void remember(const Points& x, StickMemory& memory) const;
+
     /// A vertex that friction acts on.
     struct Slider {
         Eigen::Index vertex;
         Vec3 normal;   ///< mean of the surface's normals at t and t + dt
-        Vec3 stick;    ///< where the vertex would be at t + dt if it stuck (m)
+        Vec3 stick;    ///< where the vertex would be at t + dt if it had always stuck (m)
         double force;  ///< mu N (N)
     };
     const std::vector<Slider>& sliders() const { return m_sliders; }

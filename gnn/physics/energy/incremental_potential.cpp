@@ -33,6 +33,9 @@ void check_settings(const PotentialSettings& settings) {
     check_range("PotentialSettings.friction_limit", settings.friction_limit, 0.0, 100.0);
 }
 
+// A layer that is not quite flat lies on the other with one in so many of its pairs.
+constexpr double carrying_pairs = 3.0;
+
 void require_goals(const Garment& garment, const SkinGoals& goals) {
     if (!are_goals_for(garment.goal_limits(), goals, garment.vertex_count()))
         throw ArgumentError("boundary.goals",
@@ -106,6 +109,9 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
                            m_settings.friction_slip_speed * dt, m_settings.contact_distance,
                            m_settings.contact_weight, m_settings.friction_limit});
     m_self_contact.begin_step(state, dt, tangles);
+    m_layer_friction.begin_step(
+        m_self_contact, state.x, m_settings.friction_slip_speed * dt,
+        carrying_pairs * m_settings.friction_limit * boundary.gravity.norm());
     m_goals.begin_step(state, boundary.goals, dt, m_settings.goal_stiffness);
     m_force_scale = norm_of_forces_at(state);
 }
@@ -154,7 +160,7 @@ EnergyTerms IncrementalPotential::terms(const Points& x) const {
     terms.inertia = m_inertia.value(x);
     terms.contact = m_contact.value(x, m_settings.contact_weight) +
                     m_ridges.value(x, m_settings.contact_weight);
-    terms.friction = m_friction.value(x);
+    terms.friction = m_friction.value(x) + m_layer_friction.value(x);
     terms.self_contact = m_self_contact.value(x);
     terms.goals = m_goals.value(x);
     return terms;
@@ -178,7 +184,8 @@ double IncrementalPotential::value_gradient(const Points& x, Points& gradient,
     terms.inertia = m_inertia.add_gradient(x, gradient);
     terms.contact = m_contact.add_gradient(x, m_settings.contact_weight, gradient) +
                     m_ridges.add_gradient(x, m_settings.contact_weight, gradient);
-    terms.friction = m_friction.add_gradient(x, gradient);
+    terms.friction =
+        m_friction.add_gradient(x, gradient) + m_layer_friction.add_gradient(x, gradient);
     terms.self_contact = m_self_contact.add_gradient(x, gradient);
     terms.goals = m_goals.add_gradient(x, gradient);
     mask_pins(gradient);
@@ -212,6 +219,7 @@ void IncrementalPotential::hessian(const Points& x, Eigen::SparseMatrix<double>&
     m_friction.add_hessian(x, pattern, values);
     m_goals.add_hessian(x, pattern, values);
     m_self_contact.add_hessian(x, hessian);
+    m_layer_friction.add_hessian(x, m_garment->is_pinned(), hessian);
 }
 
 void IncrementalPotential::mask_pins(Points& gradient) const {

@@ -13,6 +13,7 @@
 #include "gnn/physics/energy/goal_energy.h"
 #include "gnn/physics/energy/gravity.h"
 #include "gnn/physics/energy/inertia.h"
+#include "gnn/physics/energy/layer_friction.h"
 #include "gnn/physics/energy/ridge_energy.h"
 #include "gnn/physics/energy/self_contact.h"
 
@@ -43,8 +44,9 @@ struct PotentialSettings {
 /// The parts of the incremental potential (J).
 struct EnergyTerms {
     double strain = 0, bending = 0, gravity = 0, inertia = 0;
-    double contact = 0;  ///< of vertices and of ridges
-    double friction = 0, self_contact = 0;
+    double contact = 0;   ///< of vertices and of ridges
+    double friction = 0;  ///< on obstacles, and between layers
+    double self_contact = 0;
     double goals = 0;  ///< limits and drives of skinned goals
     double total() const {
         return strain + bending + gravity + inertia + contact + friction + self_contact + goals;
@@ -116,6 +118,7 @@ class IncrementalPotential {
     const RidgeEnergy& ridges() const { return m_ridges; }                    ///< of this step
     const FrictionEnergy& friction() const { return m_friction; }             ///< of this step
     const SelfContactEnergy& self_contact() const { return m_self_contact; }  ///< of this step
+    const LayerFriction& layer_friction() const { return m_layer_friction; }  ///< of this step
     const GoalEnergy& goals() const { return m_goals; }                       ///< of this step
 
     /// Moves a starting guess (|V| x 3, pins in place) that is too near to itself, or has passed
@@ -143,6 +146,7 @@ class IncrementalPotential {
     RidgeEnergy m_ridges;
     FrictionEnergy m_friction;
     SelfContactEnergy m_self_contact;
+    LayerFriction m_layer_friction;
     GoalEnergy m_goals;
 };
 

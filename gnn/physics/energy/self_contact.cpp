@@ -20,7 +20,8 @@ SelfContactEnergy::SelfContactEnergy(const Garment& garment, const SelfContactSe
     if (!settings.on()) return;
     m_proximity.emplace(garment, settings.thickness);
     m_inverse_masses = garment.inverse_masses();
-    m_area = garment.masses() / garment.masses().mean();
+    m_mean_mass = garment.masses().mean();
+    m_area = garment.masses() / m_mean_mass;
     m_vertex_pairs.assign(static_cast<size_t>(garment.vertex_count()), 0);
     m_edge_pairs.assign(garment.edges().size(), 0);
     m_edges = garment.edges();
@@ -81,7 +82,8 @@ void SelfContactEnergy::take_pairs() {
                              m_edge_pairs[static_cast<size_t>(second)]);
         else
             share = m_area[v[0]] / m_vertex_pairs[static_cast<size_t>(first)];
-        m_pairs.push_back({v, pair.weight, pair.normal, m_settings.weight * share, pair.distance});
+        m_pairs.push_back({v, pair.weight, pair.normal, m_settings.weight * share, pair.distance,
+                           m_mean_mass * share});
     }
 }
 

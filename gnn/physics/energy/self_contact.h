@@ -29,6 +29,7 @@ class SelfContactEnergy {
         Vec3 normal;
         double stiffness;  ///< w_p (N/m^2)
         double start;      ///< distance at t (m)
+        double mass;       ///< that the pair stands for (kg)
 
         double distance(const Points& x) const {
             const auto at = [&](size_t k) { return weight[k] * x.row(vertex[k]); };
@@ -42,6 +43,7 @@ class SelfContactEnergy {
 
     bool on() const { return m_settings.on(); }
     double thickness() const { return m_settings.thickness; }  ///< eps (m)
+    double friction() const { return m_settings.friction; }
 
     /// Finds the pairs that are near at t, or would be on the way to t + dt with the velocities at
     /// t.
@@ -76,6 +78,7 @@ class SelfContactEnergy {
     std::optional<SelfProximity> m_proximity;
     VectorX m_inverse_masses;  ///< |V| (1/kg), 0 for pins
     VectorX m_area;            ///< |V|, over the mean
+    double m_mean_mass = 0.0;  ///< (kg)
     std::vector<std::array<int, 2>> m_edges;
     Faces m_faces;
     std::vector<char> m_tangled;  ///< |V|: of a tangled edge or face; empty: there is none

@@ -46,6 +46,7 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
         m_slider_index.push_back(k);
     }
     begin_self_contact(potential.self_contact(), row_of);
+    begin_layer_friction(potential.layer_friction(), row_of);
     m_goals.begin_step(potential.goals(), row_of);
 }
 
@@ -63,6 +64,20 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
             if (contact.row[k] < 0) contact.row[k] = 0, contact.weight[k] = 0.0;
         }
         m_self_contacts.push_back(contact);
+    }
+}
+
+void ContactHessian::begin_layer_friction(const LayerFriction& friction,
+                                          const std::vector<int>& row_of) {
+    m_layer_sliders.clear();
+    for (const LayerFriction::Slider& slider : friction.sliders()) {
+        LayerSlider layer{{}, slider.weight, slider.normal};
+        for (size_t k = 0; k < 4; ++k) {
+            layer.row[k] = row_of[static_cast<size_t>(slider.vertex[k])];
+            // what does not move has no part in the blocks
+            if (layer.row[k] < 0) layer.row[k] = 0, layer.weight[k] = 0.0;
+        }
+        m_layer_sliders.push_back(layer);
     }
 }
 
@@ -90,6 +105,11 @@ void ContactHessian::linearise(const IncrementalPotential& potential, const Poin
         m_sliders[k].stiffness =
             slider.force / std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
     }
+    const LayerFriction& layers = potential.layer_friction();
+    for (size_t k = 0; k < m_layer_sliders.size(); ++k) {
+        const LayerFriction::Slider& slider = layers.sliders()[k];
+        m_layer_sliders[k].stiffness = slider.force / layers.smoothed(slider.slip(x));
+    }
     if (m_goals.active()) m_goals.linearise(x);
     if (m_self_contacts.empty()) return;
     m_from = x;
@@ -106,7 +126,7 @@ double ContactHessian::secant(double weight, double before, double after) {
 }
 
 bool ContactHessian::anticipate(const Points& step) {
-    bool any = !m_sliders.empty();
+    bool any = !m_sliders.empty() || !m_layer_sliders.empty();
     for (Contact& contact : m_contacts) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - step.row(contact.row).dot(contact.normal);
@@ -157,6 +177,13 @@ void ContactHessian::for_each_force(const Points& direction, const Visit& visit)
         const Vec3 motion = direction.row(slider.row);
         const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
         visit(slider.row, slider.stiffness * tangential);
+    }
+    for (const LayerSlider& slider : m_layer_sliders) {
+        Vec3 motion = Vec3::Zero();
+        for (size_t k = 0; k < 4; ++k)
+            motion += slider.weight[k] * direction.row(slider.row[k]).transpose();
+        const Vec3 force = slider.stiffness * (motion - slider.normal.dot(motion) * slider.normal);
+        for (size_t k = 0; k < 4; ++k) visit(slider.row[k], slider.weight[k] * force);
     }
     for (const GoalHessian::Block& block : m_goals.blocks())
         visit(block.row, block.stiffness * direction.row(block.row).transpose());
@@ -244,11 +271,14 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
             Eigen::Map<const Eigen::Vector3f>(spring.normal.data()).cast<double>(),
             spring.stiffness);
     AffineFields::Weights sliding = AffineFields::Weights::Zero();
-    for (const Slider& slider : m_sliders) {
-        const Row f = fields.at(slider.row);
-        sliding.noalias() += slider.stiffness * f * f.transpose();
-        add(f, slider.normal, -slider.stiffness);
-    }
+    const auto slide = [&](const Row& f, const Vec3& normal, double stiffness) {
+        sliding.noalias() += stiffness * f * f.transpose();
+        add(f, normal, -stiffness);
+    };
+    for (const Slider& slider : m_sliders)
+        slide(fields.at(slider.row), slider.normal, slider.stiffness);
+    for (const LayerSlider& slider : m_layer_sliders)
+        slide(combined(slider.row, slider.weight), slider.normal, slider.stiffness);
     for (const GoalHessian::Block& block : m_goals.blocks()) {
         const Row f = fields.at(block.row);
         const AffineFields::Weights weights = f * f.transpose();

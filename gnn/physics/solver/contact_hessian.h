@@ -26,6 +26,8 @@ namespace cloth {
 ///
 ///     6 w depth c c'         c = (weight n) of the pair's four vertices
 ///
+/// and friction between layers the block of friction, shared out over these four.
+///
 /// Skinned goals add the blocks of GoalHessian.
 class ContactHessian {
  public:
@@ -57,7 +59,7 @@ class ContactHessian {
     /// goals.
     bool active() const {
         return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() ||
-               !m_self_contacts.empty() || m_goals.active();
+               !m_self_contacts.empty() || !m_layer_sliders.empty() || m_goals.active();
     }
 
  private:
@@ -79,6 +81,12 @@ class ContactHessian {
     };
     struct Slider {
         int row;
+        Vec3 normal;
+        double stiffness = 0.0;  ///< (N/m)
+    };
+    struct LayerSlider {
+        std::array<int, 4> row;        ///< 0 for a pin
+        std::array<double, 4> weight;  ///< 0 for a pin
         Vec3 normal;
         double stiffness = 0.0;  ///< (N/m)
     };
@@ -106,6 +114,7 @@ class ContactHessian {
     template <class Visit>
     void for_each_force(const Points& direction, const Visit& visit) const;
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
+    void begin_layer_friction(const LayerFriction& friction, const std::vector<int>& row_of);
     void gather_springs();
     void add_springs(const Points& direction, Points& product) const;
     static double secant(double weight, double before, double after);
@@ -117,6 +126,7 @@ class ContactHessian {
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
+    std::vector<LayerSlider> m_layer_sliders;  ///< its layer_friction().sliders()
     std::vector<Spring> m_springs;
     mutable Points m_spring_forces;  ///< n x 3, scratch
     const SelfContactEnergy* m_self = nullptr;

@@ -124,6 +124,7 @@ StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& s
     m_self_contact.untangle(
         {boundary, m_proximity, m_goals, m_settings.safety_distance, m_contacts}, dt, state,
         report);
+    m_potential.friction().remember(state.x, state.stick);
     return report;
 }
 

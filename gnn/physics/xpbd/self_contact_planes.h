@@ -21,8 +21,10 @@ class SelfContactPlanes {
     }
 
     /// Moves pairs that are nearer than the thickness, or than at t where that is less, apart
-    /// again, one after the other. Keeps linear momentum; pinned vertices stay.
-    void project(PaddedPoints& x) const;
+    /// again, one after the other, and takes as much of their slip along each other as friction of
+    /// that push allows. Keeps linear momentum; pinned vertices stay.
+    /// @param before  |V| x 4 (m): positions at the start of the substep
+    void project(const PaddedPoints& before, PaddedPoints& x) const;
 
  private:
     SelfContactEnergy m_energy;

@@ -96,6 +96,7 @@ bool XpbdStepper::finish(double dt, ClothState& state) {
     m_lag = m_w.leftCols<3>() - m_v;
     state.x = m_last_x = m_x;
     state.v = m_v;
+    state.stick = {};
     state.time += dt;
     return true;
 }
@@ -155,7 +156,7 @@ void XpbdStepper::run(const Boundary& boundary, double dt, const Points& x0) {
         for (int k = 0; k < m_settings.iterations; ++k) {
             m_stretch.relax(m_p, k == 0);
             m_bending.relax(m_p, k == 0);
-            m_self_planes.project(m_p);
+            m_self_planes.project(m_before, m_p);
             m_goals.project(m_p);
             m_planes.project(m_before, m_p);
         }

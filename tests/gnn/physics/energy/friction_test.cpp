@@ -1,5 +1,8 @@
 #include "gnn/physics/energy/friction.h"
 
+#include <limits>
+#include <random>
+
 #include "tests/gnn/physics/physics_scenes.h"
 
 namespace cloth::friction_test {
@@ -36,6 +39,16 @@ class FrictionTest : public ::testing::Test {
         friction.add_gradient(x, out);
     }
     double weight() const { return garment.masses().sum() * 9.81; }
+    /// A step ends with the sheet pushed along by `slip`, and the next one begins there.
+    void push(const Vec3& slip) {
+        state.x.rowwise() += slip.transpose();
+        friction.remember(state.x, state.stick);
+    }
+    double force_at_start() const {
+        Points g;
+        gradient(state.x, g);
+        return g.colwise().sum().norm();
+    }
 };
 
 }  // namespace
@@ -94,6 +107,65 @@ TEST_F(FrictionTest, PressureHoldsOnAVerticalWallUpToTheLimit) {
     begin(Vec3::UnitZ(), Vec3::Zero(), 0.0);
     gradient(slid, g);
     EXPECT_NEAR(g.col(1).sum(), 0.4 * settings.pressure_limit * weight(), 1e-4 * weight());
+}
+
+TEST_F(FrictionTest, TheNextStepHoldsAsTheLastOneDid) {
+    const Vec3 slip = 2.0 * settings.slip * Vec3::UnitX();
+    const double force = 0.4 * weight() * 2.0 / std::sqrt(5.0);
+    begin(Vec3::UnitY());
+    push(slip);
+    EXPECT_NEAR(force_at_start(), force, 1e-9 * weight());
+    for (int step = 0; step < 100; ++step) {  // nothing moves: nothing is forgotten
+        begin(Vec3::UnitY());
+        EXPECT_NEAR(force_at_start(), force, 1e-9 * weight());
+        push(Vec3::Zero());
+    }
+    settings.distance = 4e-3;  // off the surface all is forgotten
+    begin(Vec3::UnitY());
+    push(Vec3::Zero());
+    settings.distance = 6e-3;
+    begin(Vec3::UnitY());
+    EXPECT_EQ(force_at_start(), 0.0);
+}
+
+TEST_F(FrictionTest, ALongSlipIsForgottenButForWhatHolds) {
+    begin(Vec3::UnitY());
+    push(0.1 * Vec3::UnitZ());
+    begin(Vec3::UnitY());
+    const double kept = 3.0 / std::sqrt(10.0);
+    EXPECT_NEAR(force_at_start(), kept * 0.4 * weight(), 1e-6 * weight());
+}
+
+TEST_F(FrictionTest, WhatItStoresNeverGrowsByItself) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> part(0.0, 1.0);
+    begin(Vec3::UnitY());
+    for (int step = 0; step < 300; ++step) {
+        push(4e-4 * (noise(1, 1.0, static_cast<unsigned>(step)).row(0).transpose()));
+        const double before = friction.value(state.x);
+        // Other pressure, smoothing, normal and friction.
+        boundary.obstacles[0].friction = 1.5 * part(random);
+        settings.slip = std::pow(10.0, -5.0 + 2.0 * part(random));
+        const Vec3 normal(part(random) - 0.5, 1.0, part(random) - 0.5);
+        begin(normal.normalized(), Vec3::Zero(), 6e-3 * part(random));
+        EXPECT_LE(friction.value(state.x), before * (1.0 + 1e-9)) << "step " << step;
+    }
+}
+
+TEST_F(FrictionTest, AMemoryThatDoesNotFitCountsForNothing) {
+    begin(Vec3::UnitY());
+    push(settings.slip * Vec3::UnitX());
+    const StickMemory good = state.stick;
+    state.stick.slip.conservativeResize(3, 3);
+    begin(Vec3::UnitY());
+    Points g;
+    gradient(state.x, g);
+    EXPECT_GT(g.topRows(3).norm(), 0.0);
+    EXPECT_EQ(g.bottomRows(g.rows() - 3).norm(), 0.0);
+    state.stick = good;
+    state.stick.slip.setConstant(std::numeric_limits<double>::quiet_NaN());
+    begin(Vec3::UnitY());
+    EXPECT_EQ(force_at_start(), 0.0);
 }
 
 TEST_F(FrictionTest, ActsOnlyNearTheSurface) {

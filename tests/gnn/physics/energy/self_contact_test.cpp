@@ -82,8 +82,11 @@ TEST_F(SelfContactTest, PotentialMasksPinsAndAddsAllOfIt) {
     boundary.pin_targets = Points::Zero(2, 3);
     with.begin_step(state, boundary, {}, dt);
     without.begin_step(state, boundary, {}, dt);
-    EXPECT_NEAR(with.value(x) - without.value(x), energy.value(x), 1e-9 * with.value(x));
     EXPECT_EQ(with.terms(x).self_contact, with.self_contact().value(x));
+    EXPECT_EQ(with.terms(x).friction, with.layer_friction().value(x));
+    EXPECT_GT(with.terms(x).friction, 0.0);
+    EXPECT_NEAR(with.value(x) - without.value(x), energy.value(x) + with.terms(x).friction,
+                1e-9 * with.value(x));
     Points g;
     with.value_gradient(x, g);
     for (const int pin : garment.pins()) EXPECT_EQ(g.row(pin).norm(), 0.0);
