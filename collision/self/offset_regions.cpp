@@ -8,7 +8,7 @@ namespace {
 
 // Sine of the slant that edges may have: where they cross on flat layers it is zero but for
 // rounding and slight waves.
-constexpr double level = 0.1;
+constexpr double largest_slant = 0.1;
 
 /// Part of `point - a` that is perpendicular to the edge from a to b.
 Vec3 away_from_edge(const Vec3& a, const Vec3& b, const Vec3& point) {
@@ -57,8 +57,8 @@ bool OffsetRegions::edges_contain(const ElementPair& pair, const ClosestPoints& 
             if (vertex < 0) return false;
             const Vec3 into = away_from_edge(a, b, x.row(vertex));
             const double nearer = into.dot(to_other);
-            return nearer > 0.0 &&
-                   nearer * nearer > level * level * into.squaredNorm() * points.squared;
+            return nearer > 0.0 && nearer * nearer > largest_slant * largest_slant *
+                                                         into.squaredNorm() * points.squared;
         });
     };
     return !slants(0, -points.offset) && !slants(1, points.offset);
@@ -66,14 +66,15 @@ bool OffsetRegions::edges_contain(const ElementPair& pair, const ClosestPoints& 
 
 bool OffsetRegions::face_contains(const ElementPair& pair, const ClosestPoints& points,
                                   const Points& x) const {
-    const auto on = [&](int corner) { return points.weight[static_cast<size_t>(corner) + 1] < 0.0; };
+    const auto on = [&](int corner) {
+        return points.weight[static_cast<size_t>(corner) + 1] < 0.0;
+    };
     const int corners = int{on(0)} + int{on(1)} + int{on(2)};
     if (corners == 3) return true;
     const int face = pair.element[1];
     if (corners == 2) {
         const int from = !on(0) ? 1 : !on(1) ? 2 : 0;
-        const int beyond =
-            m_beyond_face[static_cast<size_t>(face)][static_cast<size_t>(from)];
+        const int beyond = m_beyond_face[static_cast<size_t>(face)][static_cast<size_t>(from)];
         if (beyond < 0) return true;
         const Vec3 a = x.row(m_faces(face, from)), b = x.row(m_faces(face, (from + 1) % 3));
         return !(away_from_edge(a, b, x.row(beyond)).dot(points.offset) > 0.0);

@@ -128,6 +128,51 @@ std::vector<std::string> not_measured(const GarmentPlan& plan, const GarmentRowS
     return left;
 }
 
+bool is_network(const std::string& solver) {
+    return solver_family(solver).kind == SolverFamily::Kind::network;
+}
+
+/// The rows of this garment's networks that have been measured.
+std::vector<ordered_json> network_rows(const GarmentPlan& plan, const PaperReport& report) {
+    std::vector<ordered_json> rows;
+    if (!report.document().contains("rows")) return rows;
+    for (const ordered_json& row : report.document().at("rows"))
+        if (row.at("garment") == plan.garment && !row.contains("missing") &&
+            is_network(row.at("solver").get<std::string>()))
+            rows.push_back(row);
+    return rows;
+}
+
+/// All networks of a garment are measured together, once their rows are there.
+bool lacks_costs(const GarmentPlan& plan, const PaperReport& report) {
+    const std::vector<ordered_json> rows = network_rows(plan, report);
+    return std::any_of(rows.begin(), rows.end(),
+                       [](const ordered_json& row) { return row.at("network_ms").is_null(); });
+}
+
+void put_costs(const GarmentPlan& plan, const MeasuredScene& measured,
+               const GarmentRowSettings& settings, PaperReport& report) {
+    std::vector<std::string> files;
+    const auto index_of = [&](const std::string& file) {
+        const auto at = std::find(files.begin(), files.end(), file);
+        if (at != files.end()) return static_cast<size_t>(at - files.begin());
+        files.push_back(file);
+        return files.size() - 1;
+    };
+    std::vector<ordered_json> rows = network_rows(plan, report);
+    std::vector<size_t> network;
+    for (const ordered_json& row : rows)
+        network.push_back(index_of(weights_of(row.at("solver").get<std::string>(), plan.garment,
+                                              settings.solver.weights)));
+    const std::vector<NetworkCost> costs =
+        network_costs(files, measured.scene, measured.start, settings.solver.threads);
+    for (size_t k = 0; k < rows.size(); ++k) {
+        rows[k]["network_mb"] = rounded_number(costs[network[k]].memory_mb);
+        rows[k]["network_ms"] = rounded_number(costs[network[k]].ms);
+        report.put("rows", rows[k]);
+    }
+}
+
 /// Rows of solvers that lack their weights; the others are returned.
 std::vector<std::string> put_missing(const GarmentPlan& plan, const GarmentRowSettings& settings,
                                      const std::vector<std::string>& solvers, PaperReport& report) {
@@ -151,7 +196,7 @@ void measure_garment(const GarmentPlan& plan, const GarmentRowSettings& settings
                      PaperReport& report, const ProgressFunction& progress) {
     const std::vector<std::string> left =
         put_missing(plan, settings, not_measured(plan, settings, report), report);
-    if (left.empty()) return;
+    if (left.empty() && !lacks_costs(plan, report)) return;
     const auto tell = [&](int done, int all, const std::string& what) {
         progress(done, all, plan.garment + ": " + what);
     };
@@ -171,20 +216,15 @@ void measure_garment(const GarmentPlan& plan, const GarmentRowSettings& settings
             tell(done, all,
                  what + " (" + std::to_string(k + 1) + " of " + std::to_string(left.size()) + ")");
         };
-        const std::string file = weights_of(left[k], plan.garment, settings.solver.weights);
         const bool detailed = plan.garment == settings.detailed &&
                               std::count(settings.detailed_solvers.begin(),
                                          settings.detailed_solvers.end(), left[k]) > 0;
         ordered_json row = begun_row(plan, left[k], settings);
         row["vertices"] = scene->garment().vertex_count();
         row.update(measure_solver(measured, left[k], settings.solver, detailed, count));
-        if (solver_family(left[k]).kind == SolverFamily::Kind::network) {
-            const NetworkCost cost = network_cost(file, *scene, start, settings.solver.threads);
-            row["network_mb"] = rounded_number(cost.memory_mb);
-            row["network_ms"] = rounded_number(cost.ms);
-        }
         report.put("rows", row);
     }
+    if (lacks_costs(plan, report)) put_costs(plan, measured, settings, report);
 }
 
 }  // namespace cloth

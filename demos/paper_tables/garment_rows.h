@@ -20,7 +20,7 @@ struct GarmentRowSettings {
 /// its memory is taken. The garment is on the default body, in motion 01_01.
 ///
 /// A row has garment, vertices, solver, frames, fps (1000 / median ms of a frame of the rollout),
-/// ms_median, ms_p95, memory_mb (see make_warm()), network_mb and network_ms (see network_cost(),
+/// ms_median, ms_p95, memory_mb (see make_warm()), network_mb and network_ms (see network_costs(),
 /// null without network), loss (means over the frames of the rollout, J, by term and in total;
 /// gravity counts from the fine solution), gap_median (single steps), rollout_rmse_mm,
 /// fine_rmse_mm, stretch_p99, penetration_max_mm, failure and first_failed_frame. A solver without

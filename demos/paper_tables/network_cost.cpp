@@ -1,6 +1,8 @@
 #include "demos/paper_tables/network_cost.h"
 
 #include <chrono>
+#include <memory>
+#include <utility>
 
 #include "collision/proximity/proximity.h"
 #include "demos/compare/statistics.h"
@@ -12,7 +14,7 @@
 namespace cloth {
 namespace {
 
-constexpr int evaluations = 15;
+constexpr int rounds = 30;
 
 Features features_at(const ComparisonScene& scene, const ClothState& start, const ClothGraph& graph,
                      const FeatureSettings& settings) {
@@ -30,24 +32,47 @@ Features features_at(const ComparisonScene& scene, const ClothState& start, cons
     return features;
 }
 
+/// A network that is ready to be evaluated.
+struct Prepared {
+    ClothGraph graph;
+    Features features;
+    std::unique_ptr<Engine> engine;
+    std::vector<double> times;  ///< ms
+};
+
+Prepared prepare(const std::string& file, const ComparisonScene& scene, const ClothState& start,
+                 int threads) {
+    const Weights weights = Weights::load(file);
+    ClothGraph graph = build_cloth_graph(scene.garment(), weights.config.graph_settings());
+    Features features = features_at(scene, start, graph, weights.config.features);
+    return {std::move(graph),
+            std::move(features),
+            std::make_unique<Engine>(weights, EngineSettings{threads}),
+            {}};
+}
+
 }  // namespace
 
-NetworkCost network_cost(const std::string& file, const ComparisonScene& scene,
-                         const ClothState& start, int threads) {
-    const Weights weights = Weights::load(file);
-    const ClothGraph graph = build_cloth_graph(scene.garment(), weights.config.graph_settings());
-    const Features features = features_at(scene, start, graph, weights.config.features);
-    Engine engine(weights, EngineSettings{threads});
+std::vector<NetworkCost> network_costs(const std::vector<std::string>& files,
+                                       const ComparisonScene& scene, const ClothState& start,
+                                       int threads) {
+    std::vector<Prepared> networks;
+    for (const std::string& file : files) networks.push_back(prepare(file, scene, start, threads));
     Points out;
-    engine.predict(graph, features, out);  // allocates
-    std::vector<double> times;
-    for (int k = 0; k < evaluations; ++k) {
-        const auto begin = std::chrono::steady_clock::now();
-        engine.predict(graph, features, out);
-        const auto time = std::chrono::steady_clock::now() - begin;
-        times.push_back(std::chrono::duration<double, std::milli>(time).count());
-    }
-    return {1e-6 * static_cast<double>(engine.memory().total()), median(times)};
+    for (Prepared& network : networks)  // allocates
+        network.engine->predict(network.graph, network.features, out);
+    for (int round = 0; round < rounds; ++round)
+        for (Prepared& network : networks) {
+            const auto begin = std::chrono::steady_clock::now();
+            network.engine->predict(network.graph, network.features, out);
+            const auto time = std::chrono::steady_clock::now() - begin;
+            network.times.push_back(std::chrono::duration<double, std::milli>(time).count());
+        }
+    std::vector<NetworkCost> costs;
+    for (const Prepared& network : networks)
+        costs.push_back(
+            {1e-6 * static_cast<double>(network.engine->memory().total()), median(network.times)});
+    return costs;
 }
 
 }  // namespace cloth
