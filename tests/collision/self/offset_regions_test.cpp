@@ -62,10 +62,9 @@ TEST_P(OffsetRegionsTest, WhereAFaceDoesNotContainAVertexAnotherIsNearer) {
             const auto shares = [&](int v) { return (faces.row(f).array() == v).any(); };
             if (!shares(pair.vertex[1]) && !shares(pair.vertex[2]) && !shares(pair.vertex[3]))
                 continue;
-            const ElementPair other{
-                {pair.vertex[0], faces(f, 0), faces(f, 1), faces(f, 2)},
-                {pair.vertex[0], static_cast<int>(f)},
-                false};
+            const ElementPair other{{pair.vertex[0], faces(f, 0), faces(f, 1), faces(f, 2)},
+                                    {pair.vertex[0], static_cast<int>(f)},
+                                    false};
             nearer = std::min(nearer, closest_points(false, corners_of(other, x)).squared);
         }
         EXPECT_LT(nearer, points.squared);
@@ -87,9 +86,8 @@ TEST_P(OffsetRegionsTest, EdgesThatAreContainedLookAcrossTheirSurfaces) {
         // A wave of slope s turns the surfaces by as much, and edges may slant by 0.1 besides.
         const double slope = GetParam() * 31;
         const double across = std::abs(points.offset.y()) / std::sqrt(points.squared);
-        const bool at_border =
-            pair.element[0] >= 0 && (std::abs(x(pair.vertex[0], 0)) > 0.1 ||
-                                     std::abs(x(pair.vertex[0], 2)) > 0.1);
+        const bool at_border = pair.element[0] >= 0 && (std::abs(x(pair.vertex[0], 0)) > 0.1 ||
+                                                        std::abs(x(pair.vertex[0], 2)) > 0.1);
         if (!at_border) {
             EXPECT_GT(across, std::cos(0.25 + 2.0 * slope));
         }

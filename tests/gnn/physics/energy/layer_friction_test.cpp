@@ -61,8 +61,8 @@ TEST_F(LayerFrictionTest, HessianEqualsFiniteDifferencesAndLeavesPinsOut) {
     Points product(x.rows(), 3);
     Eigen::Map<VectorX>(product.data(), product.size()) =
         hessian * Eigen::Map<const VectorX>(direction.data(), direction.size());
-    Points numeric = numeric_hessian_product(
-        [&](const Points& y, Points& g) { gradient(y, g); }, x, direction, 1e-8);
+    Points numeric = numeric_hessian_product([&](const Points& y, Points& g) { gradient(y, g); }, x,
+                                             direction, 1e-8);
     for (const int pin : garment.pins()) numeric.row(pin).setZero();
     expect_close(product, numeric, 1e-5);
 }
