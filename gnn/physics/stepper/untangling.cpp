@@ -12,7 +12,7 @@ constexpr int smoothing = 4;          // rounds, on the forces and once more on 
 constexpr double steepest = 4.0;      // see TangleMeasure::gradient()
 constexpr double farthest = 0.5;      // move of a vertex, in thicknesses
 constexpr int halvings = 5;           // of a move that does not lower the energy
-constexpr int vertex_iterations = 3;  // of push_out_rows
+constexpr int push_iterations = 3;  // of push_out_rows
 
 }  // namespace
 
@@ -135,7 +135,7 @@ void Untangling::hold(const Surroundings& outside) {
             if (m_trial.row(i) != m_x.row(i)) m_rows.push_back(static_cast<int>(i));
         outside.proximity.query_rows(m_trial, m_rows, outside.boundary, outside.contacts,
                                      StepEnd::end);
-        push_out_rows(outside.proximity, outside.boundary, outside.distance, vertex_iterations,
+        push_out_rows(outside.proximity, outside.boundary, outside.distance, push_iterations,
                       m_rows, m_trial, outside.contacts);
     }
     outside.goals.resolve(outside.proximity, outside.boundary, outside.distance, m_trial,
