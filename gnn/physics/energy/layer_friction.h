@@ -14,8 +14,9 @@ namespace cloth {
 /// where u_p is the tangential part of the motion of one side of the pair relative to the other
 /// since t, and s the smoothing slip. N_p, fixed at t, is the pair's contact force there, at most
 /// `force_per_mass` times the mass that the pair stands for: what is too deep in an unconverged
-/// state shall not stick. Momentum is kept. Pairs are new in each step, so layers that friction
-/// holds creep, by less than s in a step.
+/// state shall not stick. In steps in which layers slide over several edges N_p is a poor estimate:
+/// at 60 Hz a sheet slides up to 1.7 times as far as Coulomb says, at 240 Hz 1.1 times. Momentum is
+/// kept. Pairs are new in each step, so layers that friction holds creep, by less than s in a step.
 class LayerFriction {
  public:
     /// A pair that friction acts on.

@@ -8,10 +8,10 @@
 namespace cloth {
 namespace {
 
-constexpr int smoothing = 4;          // rounds, on the forces and once more on the motions
-constexpr double steepest = 4.0;      // see TangleMeasure::gradient()
-constexpr double farthest = 0.5;      // move of a vertex, in thicknesses
-constexpr int halvings = 5;           // of a move that does not lower the energy
+constexpr int smoothing = 4;        // rounds, on the forces and once more on the motions
+constexpr double steepest = 4.0;    // see TangleMeasure::gradient()
+constexpr double farthest = 0.5;    // move of a vertex, in thicknesses
+constexpr int halvings = 5;         // of a move that does not lower the energy
 constexpr int push_iterations = 3;  // of push_out_rows
 
 }  // namespace
