@@ -16,7 +16,8 @@ namespace cloth {
 /// follows the mean motion of its pins instead; the pins themselves stay where they are.
 class RigidImpactZones {
  public:
-    explicit RigidImpactZones(const Garment& garment);
+    /// @param masses  |V| (kg), above 0; none: the garment's
+    explicit RigidImpactZones(const Garment& garment, VectorX masses = {});
 
     /// Forgets all zones. @param x  |V| x 3 (m): where the step would have ended
     void begin(const Points& x);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "collision/geometry/gather_in_order.h"
 
@@ -47,8 +48,10 @@ bool crosses(const ElementPair& elements, const Points& x0, const Points& motion
     return true;
 }
 
-SelfCrossings::SelfCrossings(const Garment& garment)
-    : m_elements(garment), m_faces(garment.rest().vertices, garment.rest().faces) {
+SelfCrossings::SelfCrossings(const Garment& garment, FaceParts parts)
+    : m_elements(garment),
+      m_faces(garment.rest().vertices, garment.rest().faces),
+      m_parts_of_faces(std::move(parts)) {
 }
 
 const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
@@ -59,6 +62,7 @@ const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points&
     const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         const auto& [f, g] = faces[static_cast<size_t>(k)];
+        if (m_parts_of_faces.same(f, g)) return;
         const float far = (1.0f + 1e-6f) * m_bounds.approach(f, g);
         m_elements.visit(f, g, [&](const ElementPair& elements) {
             SelfPair pair;

@@ -15,7 +15,8 @@ namespace cloth {
 /// to the side on which the first element was before.
 class SelfCrossings {
  public:
-    explicit SelfCrossings(const Garment& garment);
+    /// @param parts  faces of one part may pass through each other
+    explicit SelfCrossings(const Garment& garment, FaceParts parts = {});
 
     /// Replaces found() by the pairs whose elements touch when all vertices move evenly from x0 to
     /// x1 (|V| x 3, m). None is missed whose elements are apart by more than rounding at x0; those
@@ -31,6 +32,7 @@ class SelfCrossings {
  private:
     SelfElements m_elements;
     FacePairs m_faces;
+    FaceParts m_parts_of_faces;
     ElementBounds m_bounds;
     Points m_motion;  ///< |V| x 3 (m)
     std::vector<SelfPair> m_found;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "collision/geometry/gather_in_order.h"
 #include "data/core/garment_pieces.h"
@@ -25,12 +26,13 @@ Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, c
 
 }  // namespace
 
-SelfProximity::SelfProximity(const Garment& garment, double thickness)
+SelfProximity::SelfProximity(const Garment& garment, double thickness, FaceParts parts)
     : m_elements(garment),
       m_faces(garment.rest().vertices, garment.rest().faces),
       m_regions(garment),
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
+      m_parts_of_faces(std::move(parts)),
       m_thickness(thickness) {
 }
 
@@ -61,6 +63,7 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
     const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         const auto [f, g] = faces[static_cast<size_t>(k)];
+        if (m_parts_of_faces.same(f, g)) return;
         const float far = (1.0f + 1e-6f) * (static_cast<float>(reach) + m_bounds.approach(f, g));
         m_elements.visit(f, g, [&](const ElementPair& elements) {
             SelfPair pair;

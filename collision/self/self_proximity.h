@@ -4,6 +4,7 @@
 
 #include "collision/self/element_bounds.h"
 #include "collision/self/face_pairs.h"
+#include "collision/self/face_parts.h"
 #include "collision/self/offset_regions.h"
 #include "collision/self/self_elements.h"
 
@@ -42,7 +43,8 @@ struct SelfPair {
 class SelfProximity {
  public:
     /// @param thickness  (m)
-    SelfProximity(const Garment& garment, double thickness);
+    /// @param parts      faces of one part make no pairs
+    SelfProximity(const Garment& garment, double thickness, FaceParts parts = {});
 
     /// Replaces pairs() by those whose closest points at x (|V| x 3, m), fixed to their elements,
     /// come within `reach` (m) of each other anywhere on the way to x + motion (|V| x 3, m). The
@@ -63,6 +65,7 @@ class SelfProximity {
     OffsetRegions m_regions;
     Points m_rest;             ///< |V| x 3 (m)
     std::vector<int> m_piece;  ///< |V|: connected piece
+    FaceParts m_parts_of_faces;
     double m_thickness;
     std::vector<SelfPair> m_pairs;
     std::vector<std::vector<SelfPair>> m_parts;

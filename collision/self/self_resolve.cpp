@@ -19,14 +19,26 @@ constexpr int zone_rounds = 50;         // each joins zones that touch, so they 
 constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
                                         // nothing cannot be told from elements that touch
 
+VectorX inverses(const VectorX& masses, const std::vector<char>& pinned) {
+    VectorX inverse = masses.cwiseInverse();
+    for (size_t i = 0; i < pinned.size(); ++i)
+        if (pinned[i]) inverse[static_cast<Eigen::Index>(i)] = 0.0;
+    return inverse;
+}
+
 }  // namespace
 
 SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& settings)
+    : SelfResolver(garment, settings, garment.masses(), {}) {
+}
+
+SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& settings,
+                           const VectorX& masses, const FaceParts& parts)
     : m_settings(settings),
-      m_crossings(garment),
-      m_push(garment.inverse_masses()),
+      m_crossings(garment, parts),
+      m_push(inverses(masses, garment.is_pinned())),
       m_guard(garment, growth),
-      m_zones(garment),
+      m_zones(garment, masses),
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
       m_held(static_cast<size_t>(garment.vertex_count()), 0) {

@@ -35,6 +35,10 @@ class SelfResolver {
  public:
     /// @throws ArgumentError if a setting is out of range
     SelfResolver(const Garment& garment, const SelfContactSettings& settings);
+    /// @param masses  |V| (kg), above 0
+    /// @param parts   of faces that may pass through each other
+    SelfResolver(const Garment& garment, const SelfContactSettings& settings, const VectorX& masses,
+                 const FaceParts& parts);
 
     /// @param x0        |V| x 3 (m): positions at t, which say what side is right
     /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt, or empty
@@ -45,6 +49,8 @@ class SelfResolver {
 
     /// Vertices that the last resolve() may have moved, each once.
     const std::vector<int>& moved() const { return m_moved; }
+    /// Pairs that would have passed through each other in the last resolve(), in any round.
+    const std::vector<SelfPair>& pairs() const { return m_pairs; }
 
  private:
     void push(const SurfaceContacts& contacts, double distance, Points& x);

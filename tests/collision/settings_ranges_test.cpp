@@ -1,6 +1,7 @@
 #include "collision/proximity/limb_overlap.h"
 #include "collision/response/contact_projection.h"
 #include "collision/response/skin_blend.h"
+#include "collision/self/layer_contacts.h"
 #include "collision/self/self_contact_settings.h"
 #include "data/authoring/sheet.h"
 #include "tests/ranges.h"
@@ -53,6 +54,13 @@ TEST(SettingsRanges, SelfContact) {
     expect_range("SelfContactSettings.untangling_tension", &S::untangling_tension, 0.0, 10.0, use);
     expect_range("SelfContactSettings.untangling_moves", &S::untangling_moves, 0, 100, use);
     expect_range("SelfContactSettings.threads", &S::threads, 0, 1024, use);
+}
+
+TEST(SettingsRanges, LayerContacts) {
+    using S = LayerContactSettings;
+    const auto use = [](const S& settings) { check_layer_contacts(settings); };
+    expect_range("LayerContactSettings.thickness", &S::thickness, 1e-3, 2e-2, use);
+    expect_range("LayerContactSettings.threads", &S::threads, 0, 1024, use);
 }
 
 }  // namespace

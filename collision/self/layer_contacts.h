@@ -1,0 +1,92 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "collision/proximity/proximity.h"
+#include "collision/response/coulomb_contacts.h"
+#include "collision/self/self_proximity.h"
+#include "collision/self/self_resolve.h"
+
+namespace cloth {
+
+/// Pieces of cloth that are stepped each by itself, and meet.
+struct LayerContactSettings {
+    double thickness = 4e-3;  ///< distance that cloth keeps from cloth (m), 1e-3 to 2e-2
+    int threads = 0;  ///< 0 to 1024; 0: as many as OpenMP gives; results do not depend on it
+};
+
+/// @throws ArgumentError if a setting is out of range
+void check_layer_contacts(const LayerContactSettings& settings);
+
+/// Contact between pieces of cloth, after each of them has been stepped as if it was alone: what
+/// solver moved them does not count. Layers that one solver steps together (merge_garments(), with
+/// self-contact on) are the better choice where they can be chosen: there contact is part of the
+/// step.
+///
+///     LayerContacts contacts(all, part, masses, friction, settings);
+///     contacts.resolve(x0, 5e-4, outside, x, v);
+///
+/// 1. Elements of different pieces that come near each other are pushed apart, to the thickness or
+///    to what they were apart at t, whichever is less, and held by Coulomb's friction, where
+///    obstacles leave room: see CoulombContacts.
+/// 2. What would pass through each other all the same is put back, see SelfResolver.
+/// 3. The velocities get the impulses that keep these elements from approaching, with friction.
+///    Obstacles have no part in that: what presses a piece against an obstacle is in its velocity,
+///    and what it is to the obstacle is found by its next step.
+///
+/// Momentum of vertices that are not pinned is kept, by positions but for obstacles, by velocities
+/// always. The impulses are inelastic: they add no kinetic energy. Cloth that meets nothing keeps
+/// its bits.
+class LayerContacts {
+ public:
+    /// The obstacles around the pieces, at t + dt.
+    class Outside {
+     public:
+        virtual ~Outside() = default;
+        /// Brings the contacts of these vertices of x up to date, and moves those that are nearer
+        /// to an obstacle than the distance out to it.
+        /// @return  how deep the deepest of them was inside (m)
+        virtual double push_out(const std::vector<int>& rows, Points& x) = 0;
+        /// Nearest points of x as push_out() left it (|V|); empty: there are no obstacles.
+        virtual const SurfaceContacts& contacts() const = 0;
+    };
+
+    struct Report {
+        int pairs = 0;      ///< of elements that pushed each other
+        int crossings = 0;  ///< that would have passed through each other all the same
+        int left = 0;       ///< that still do
+    };
+
+    /// @param all       the pieces in one garment; only its mesh and its pins count
+    /// @param part      |V|: piece of each vertex, from 0; faces have corners of one piece
+    /// @param masses    |V| (kg), above 0
+    /// @param friction  Coulomb's coefficient of each piece; of two that meet, the larger counts
+    /// @throws ArgumentError if a setting is out of range
+    LayerContacts(const Garment& all, std::vector<int> part, const VectorX& masses,
+                  std::vector<double> friction, const LayerContactSettings& settings = {});
+
+    /// @param x0        |V| x 3 (m): positions at t, which say what side is right
+    /// @param distance  of vertices from obstacles (m) that is held
+    /// @param outside   null: there are no obstacles
+    /// @param x, v      |V| x 3 (m, m/s): at t + dt; those of pinned vertices do not change
+    Report resolve(const Points& x0, double distance, Outside* outside, Points& x, Points& v);
+
+ private:
+    double friction_of(const SelfPair& pair) const;
+    void separate(const Points& x0, double distance, const SurfaceContacts& outside, Points& x);
+    void slow_down(Points& v);
+
+    LayerContactSettings m_settings;
+    std::vector<int> m_part;
+    std::vector<double> m_friction;
+    SelfProximity m_proximity;
+    SelfResolver m_resolver;
+    CoulombContacts m_contacts;
+    SurfaceContacts m_none;
+    std::vector<char> m_held;        ///< |V|: by a plane of an obstacle
+    std::vector<SelfPair> m_pushed;  ///< pairs that pushed each other in this step
+    std::vector<int> m_rows;
+};
+
+}  // namespace cloth
