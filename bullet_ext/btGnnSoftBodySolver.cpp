@@ -10,6 +10,7 @@
 
 #include "bullet_ext/bodyFollower.h"
 #include "bullet_ext/bodyGoals.h"
+#include "bullet_ext/clothContacts.h"
 #include "bullet_ext/materialFabric.h"
 #include "bullet_ext/rootMotion.h"
 #include "bullet_ext/softBodyGarment.h"
@@ -124,9 +125,8 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
 }
 
 /// Whether Bullet would let the two collide, and their boxes meet.
-bool askForContact(const btSoftBody& a, const btSoftBody& b) {
-    constexpr int kSoftContact = btSoftBody::fCollision::VF_SS | btSoftBody::fCollision::CL_SS;
-    return (a.m_cfg.collisions & b.m_cfg.collisions & kSoftContact) != 0 &&
+bool wouldCollide(const btSoftBody& a, const btSoftBody& b) {
+    return cloth::askForContact(a, b) &&
            TestAabbAgainstAabb2(a.m_bounds[0], a.m_bounds[1], b.m_bounds[0], b.m_bounds[1]);
 }
 
@@ -146,6 +146,11 @@ btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
                             "give a function that makes a Stepper of a Garment");
     cloth::check_range("btGnnSolverSettings.obstacleReach", settings.obstacleReach, 0.02, 1.0);
     cloth::check_range("btGnnSolverSettings.sleepMotion", settings.sleepMotion, 0.0, 0.05);
+    if (settings.layerThickness != 0.0) {
+        cloth::check_range("btGnnSolverSettings.layerThickness", settings.layerThickness, 1e-3,
+                           2e-2);
+        m_contacts = std::make_unique<cloth::ClothContacts>(settings.layerThickness);
+    }
     cloth::check_range("btGnnSolverSettings.maxFailedSteps", settings.maxFailedSteps, 1, 1000000);
     cloth::check_range("btGnnSolverSettings.maxMs", settings.maxMs, 0.1,
                        std::numeric_limits<double>::infinity());
@@ -228,6 +233,7 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
     entry.step = std::make_unique<cloth::SoftBodyStep>(
         body, std::move(garment), std::move(stepper), m_settings.sleepMotion,
         m_settings.friction == btGnnFriction::bullet);
+    entry.built = ++m_built;
     joinGoals(body, entry);
     entry.step->setRoot(entry.root);
     applyDetail(body, entry);
@@ -557,7 +563,9 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_status.sleepingBodies = m_status.frozenBodies = m_status.carriedBodies = 0;
     m_status.maxPenetration = m_status.maxIgnoredDepth = 0.0;
     m_status.nodesInIgnoredLimbs = 0;
+    m_status.touchingPairs = m_status.passedPairs = 0;
     m_status.times = {};
+    const std::vector<std::vector<Stepped>> meeting = findMeetingCloth();
     const bool limited = !std::isinf(m_settings.maxMs);
     const cloth::Deadline deadline =
         limited ? cloth::Deadline::in(m_settings.maxMs) : cloth::Deadline();
@@ -600,6 +608,7 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
             stepTogether({cloth});
     }
     stepTogether(together);
+    for (const std::vector<Stepped>& group : meeting) resolveContacts(group);
     for (const std::string& message : m_obstacles.takeMessages()) say(message);
 }
 
@@ -628,7 +637,74 @@ void btGnnSoftBodySolver::stepTogether(const std::vector<Stepped>& cloth) {
         cloth::solveSteps(due);
         for (cloth::SoftBodyStep* step : due) step->endClothStep(m_obstacles);
     }
-    for (const Stepped& one : cloth) finishStep(one);
+    for (const Stepped& one : cloth) {
+        one.entry->waits = one.entry->meets;
+        if (one.entry->waits)
+            one.entry->step->handOver(m_obstacles);
+        else
+            finishStep(one);
+    }
+}
+
+/// Groups of cloth that may touch in this world step. What moves wakes what it may touch.
+std::vector<std::vector<btGnnSoftBodySolver::Stepped>> btGnnSoftBodySolver::findMeetingCloth() {
+    std::vector<Stepped> cloth;
+    std::vector<const btSoftBody*> bodies;
+    for (int i = 0; m_contacts && i < m_softBodySet.size(); ++i) {
+        btSoftBody* const body = m_softBodySet[i];
+        if (!isStepped(body)) continue;
+        cloth.push_back({body, &m_entries[body]});
+        bodies.push_back(body);
+    }
+    std::vector<std::vector<Stepped>> result;
+    if (cloth.empty()) return result;
+    m_contacts->beginStep(m_h);
+    std::vector<char> meets(cloth.size(), 0);
+    for (const std::vector<size_t>& group : m_contacts->groups(bodies)) {
+        const bool moves = std::any_of(group.begin(), group.end(), [&](size_t k) {
+            return bodies[k]->isActive() && bodies[k]->getActivationState() != WANTS_DEACTIVATION;
+        });
+        result.emplace_back();
+        for (const size_t k : group) {
+            if (moves && !bodies[k]->isActive()) cloth[k].body->activate();
+            meets[k] = 1;
+            result.back().push_back(cloth[k]);
+        }
+    }
+    for (size_t k = 0; k < cloth.size(); ++k) {
+        cloth[k].entry->meets = meets[k] != 0;
+        cloth[k].entry->step->setMeeting(meets[k] != 0);
+    }
+    return result;
+}
+
+/// Contact between bodies that have been stepped; the rest of their world steps.
+void btGnnSoftBodySolver::resolveContacts(std::vector<Stepped> group) {
+    group.erase(std::remove_if(group.begin(), group.end(),
+                               [](const Stepped& one) { return !one.entry->waits; }),
+                group.end());
+    std::vector<cloth::ClothContacts::Member> members;
+    for (const Stepped& one : group)
+        if (one.entry->step->isStepping())
+            members.push_back({one.body, one.entry->step.get(), one.entry->built});
+    if (members.size() > 1) {
+        const auto begin = std::chrono::steady_clock::now();
+        const cloth::ClothContacts::Report report = m_contacts->resolve(members, m_obstacles);
+        const std::chrono::duration<double, std::milli> passed =
+            std::chrono::steady_clock::now() - begin;
+        m_status.times.contact += passed.count();
+        m_status.touchingPairs += report.pairs;
+        m_status.passedPairs += report.left;
+        if (report.left > 0)
+            say(cloth::softBodyName(*members.front().body) + " and " +
+                std::to_string(members.size() - 1) +
+                " others near it: there is no room for all of them, so they pass through each "
+                "other. Remedy: smaller time steps, or a smaller layerThickness");
+    }
+    for (const Stepped& one : group) {
+        one.entry->waits = false;
+        finishStep(one);
+    }
 }
 
 void btGnnSoftBodySolver::finishStep(const Stepped& cloth) {
@@ -684,15 +760,17 @@ void btGnnSoftBodySolver::processCollision(btSoftBody* body,
 
 void btGnnSoftBodySolver::processCollision(btSoftBody* body, btSoftBody* otherBody) {
     const bool isCloth = steppingOf(body) == Stepping::cloth;
+    const bool isOtherCloth = steppingOf(otherBody) == Stepping::cloth;
+    if (isCloth && isOtherCloth) return;
     if (steppingOf(body) == Stepping::bullet && steppingOf(otherBody) == Stepping::bullet)
         body->defaultCollisionHandler(otherBody);
-    else if (askForContact(*body, *otherBody))
+    else if (wouldCollide(*body, *otherBody))
         say((isCloth ? cloth::softBodyName(*body) : cloth::softBodyName(*otherBody)) +
             ": it meets " +
             (isCloth ? cloth::softBodyName(*otherBody) : cloth::softBodyName(*body)) +
-            ", and both ask for contact between soft bodies (VF_SS or CL_SS), but cloth passes "
-            "through soft bodies. Remedy: merge_garments() for layers of cloth, a rigid body or "
-            "setAnimatedObstacle() for what lies below, or detach() both");
+            ", which Bullet steps, and both ask for contact between soft bodies (VF_SS or CL_SS), "
+            "but cloth passes through such bodies. Remedy: a rigid body or setAnimatedObstacle() "
+            "for what the cloth is to touch, or detach() the cloth");
 }
 
 const cloth::Stepper* btGnnSoftBodySolver::stepperOf(const btSoftBody* body) const {

@@ -20,6 +20,7 @@
 namespace cloth {
 
 class BodyGoals;
+class ClothContacts;
 class RootMotion;
 class SkinBlend;
 class SoftBodyStep;
@@ -50,7 +51,10 @@ struct btGnnSolverSettings {
     double obstacleReach = 0.1;  ///< how far around cloth obstacles are looked for (m), 0.02 to 1
     double sleepMotion = 5e-3;   ///< cloth that moves less (m) for gDeactivationTime sleeps, 0 to
                                  ///< 0.05; 0: it never does
-    int maxFailedSteps = 3;      ///< failures in a row after which Bullet steps it, 1 to 1000000
+    /// Distance that cloth bodies keep from each other (m), 1e-3 to 0.02, where both ask for
+    /// contact between soft bodies: VF_SS in m_cfg.collisions. 0: they pass through each other.
+    double layerThickness = 4e-3;
+    int maxFailedSteps = 3;  ///< failures in a row after which Bullet steps it, 1 to 1000000
     /// Bodies that push no rigid body, and have independent steppers, are stepped at the same time,
     /// see solveSteps() and cloth::Stepper::is_independent(). False, or with maxMs: all are stepped
     /// one after the other.
@@ -91,6 +95,9 @@ struct btGnnSolverStatus {
     long failedSteps = 0;     ///< those that failed
     long cutSteps = 0;        ///< those that were taken in parts, see cloth::ClothStepper
     long shortenedSteps = 0;  ///< those that btGnnSolverSettings::maxMs ended early
+    int touchingPairs = 0;    ///< of edges, and of nodes and faces, of different cloth bodies that
+                              ///< touched each other in the last world step
+    int passedPairs = 0;      ///< of these, those that passed through each other for want of room
     double maxPenetration = 0.0;  ///< deepest cloth node in an obstacle, as the last world step
                                   ///< shows both (m); limbs that it ignores do not count
     /// Deepest cloth node inside a limb that it ignores (m): where limbs of a character pass
@@ -298,6 +305,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         size_t topology = 0;
         std::vector<double> restLengths;  ///< of its links at the last step (m)
         int failures = 0;                 ///< in a row
+        long built = 0;                   ///< the number of this stepper in the solver
+        bool meets = false;               ///< other cloth is near
+        bool waits = false;               ///< to be finished when contacts are resolved
     };
 
     void build(btSoftBody& body, Entry& entry);
@@ -315,6 +325,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     };
     void stepTogether(const std::vector<Stepped>& cloth);
     void finishStep(const Stepped& cloth);
+    std::vector<std::vector<Stepped>> findMeetingCloth();
+    void resolveContacts(std::vector<Stepped> group);
     const std::shared_ptr<cloth::BodyGoals>& goalsOf(const btSoftBody& body, Entry& entry);
     void joinGoals(btSoftBody& body, Entry& entry);
     cloth::RootMotion& rootOf(Entry& entry);
@@ -330,6 +342,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     btGnnSolverSettings m_settings;
     btGnnSolverStatus m_status;
     cloth::BulletObstacles m_obstacles;
-    double m_h = 0.0;  ///< the last world step (s)
+    std::unique_ptr<cloth::ClothContacts> m_contacts;  ///< null: cloth does not touch cloth
+    long m_built = 0;                                  ///< steppers so far
+    double m_h = 0.0;                                  ///< the last world step (s)
     std::map<const btSoftBody*, Entry> m_entries;
 };

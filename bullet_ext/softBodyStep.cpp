@@ -71,7 +71,7 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     m_h = std::min(h * m_time_scale, kLongest);
     m_reach = reach;
     m_result = Result();
-    m_begun = false;
+    m_begun = m_handed_over = false;
     if (m_goals) m_goals->beginStep(h);
     if (m_root) m_root->beginStep(h);
     // Nodes changed since the solver looked at them: next step.
@@ -97,14 +97,20 @@ bool SoftBodyStep::isIndependent(const BulletObstacles& obstacles) const {
 SoftBodyStep::Result SoftBodyStep::end(BulletObstacles& obstacles) {
     if (!m_begun) return m_result;
     followAnchors();
-    showClothStep();
+    m_shown = endOfWorldStep();
     writeNodes();
     measureDepth(obstacles);
     m_result.stretched_anchor = stretchedAnchor();
-    m_reactions.apply(m_h, obstacles.solidsNear(m_body, m_box.low, m_box.high, {m_world_h, 0.0}));
+    handOver(obstacles);
     m_cloth_step.begin -= m_h;
     m_sleep.afterStep(m_shown.x, m_world_h, obstacles, m_box.low, m_box.high);
     return m_result;
+}
+
+void SoftBodyStep::handOver(BulletObstacles& obstacles) {
+    if (!m_begun || m_handed_over) return;
+    m_handed_over = true;
+    m_reactions.apply(m_h, obstacles.solidsNear(m_body, m_box.low, m_box.high, {m_world_h, 0.0}));
 }
 
 bool SoftBodyStep::sleepsOn(const BulletObstacles& obstacles) {
@@ -280,7 +286,8 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
     m_pins_drift = goes_on && first_of_step ? Points(m_pins_before - m_pins_at_cloth_step)
                                             : Points::Zero(m_pins_before.rows(), 3);
     m_pins_at_cloth_step = m_pins_after;
-    m_continues = goes_on;
+    m_continues = goes_on && !m_pushed;
+    m_pushed = false;
     m_cloth_step.from = goes_on ? m_cloth_step.to : m_shown;
     m_cloth_step.begin = goes_on ? m_cloth_step.begin + m_cloth_step.length : 0.0;
     m_cloth_step.length = clothStepLength();
@@ -295,7 +302,8 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
 
 double SoftBodyStep::clothStepLength() const {
     const double own = looksAhead() ? m_stepper->fixed_dt() : m_h - m_cloth_step.begin;
-    const bool may_be_longer = m_rate > 1 && m_stepper->accepts_any_dt() && !hangsOnDynamicBody();
+    const bool may_be_longer =
+        m_rate > 1 && m_stepper->accepts_any_dt() && !m_meeting && !hangsOnDynamicBody();
     // A step of its own length that is nearly as long is better: a network is made for it.
     return may_be_longer && m_rate * m_h > 1.5 * own ? m_rate * m_h : own;
 }
@@ -307,10 +315,10 @@ bool SoftBodyStep::hangsOnDynamicBody() const {
     return false;
 }
 
-/// A body that hangs on the cloth, and is pulled by it, cannot be foreseen.
+/// A body that hangs on the cloth, and is pulled by it, cannot be foreseen; nor can other cloth.
 bool SoftBodyStep::looksAhead() const {
     if (!(m_stepper->fixed_dt() > 0.0)) return false;
-    return !m_stepper->accepts_any_dt() || !hangsOnDynamicBody();
+    return !m_stepper->accepts_any_dt() || !(m_meeting || hangsOnDynamicBody());
 }
 
 Pose SoftBodyStep::carryingMotion() const {
@@ -426,19 +434,33 @@ void SoftBodyStep::slowDown(BulletObstacles& obstacles) {
     if (damping > 0.0) m_cloth_step.to.v *= std::pow(1.0 - damping, m_cloth_step.length / m_h);
 }
 
-void SoftBodyStep::showClothStep() {
+bool SoftBodyStep::endsWithWorldStep() const {
+    const double ahead = m_cloth_step.begin + m_cloth_step.length - m_h;
+    return m_begun && m_cloth_step.valid && std::abs(ahead) <= 1e-3 * m_cloth_step.length;
+}
+
+ClothState SoftBodyStep::endOfWorldStep() const {
+    if (!m_begun) return m_shown;
     const double s = std::clamp((m_h - m_cloth_step.begin) / m_cloth_step.length, 0.0, 1.0);
+    ClothState shown;
     if (s > 1.0 - 1e-3) {
-        m_shown = m_cloth_step.to;
+        shown = m_cloth_step.to;
     } else {
-        m_shown.x = m_cloth_step.from.x + s * (m_cloth_step.to.x - m_cloth_step.from.x);
-        m_shown.v = m_cloth_step.from.v + s * (m_cloth_step.to.v - m_cloth_step.from.v);
-        m_shown.time = m_cloth_step.from.time + s * m_cloth_step.length;
-        m_shown.stick = {};
+        shown.x = m_cloth_step.from.x + s * (m_cloth_step.to.x - m_cloth_step.from.x);
+        shown.v = m_cloth_step.from.v + s * (m_cloth_step.to.v - m_cloth_step.from.v);
+        shown.time = m_cloth_step.from.time + s * m_cloth_step.length;
     }
     const std::vector<int>& pins = m_garment->pins();
     for (size_t p = 0; p < pins.size(); ++p)
-        m_shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
+        shown.x.row(pins[p]) = m_pins_after.row(static_cast<Eigen::Index>(p));
+    return shown;
+}
+
+void SoftBodyStep::takeContact(const Points& x, const Points& v, double depth) {
+    m_cloth_step.to.x = x;
+    m_cloth_step.to.v = v;
+    m_pushed = true;
+    m_pushed_depth = depth;
 }
 
 /// Where the cloth step ends with the world step, and the cloth saw all as it is shown, its stepper
@@ -449,6 +471,7 @@ void SoftBodyStep::measureDepth(BulletObstacles& obstacles) {
     if (std::abs(ahead) > 1e-3 * m_cloth_step.length || m_pinched.movesSolids() ||
         m_reactions.heldBack())
         m_depth = obstacles.deepest(m_body, m_shown.x, m_garment->is_pinned());
+    if (m_pushed) m_depth = std::max(m_depth, m_pushed_depth);
 }
 
 /// An edge of twice its length is torn cloth.

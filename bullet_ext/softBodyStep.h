@@ -50,6 +50,7 @@ class SoftBodyStep {
     const Garment& garment() const { return *m_garment; }
     const Stepper& stepper() const { return *m_stepper; }
     const Points& shown() const { return m_shown.x; }  ///< where the nodes are (|V| x 3, m)
+    const Points& shownVelocities() const { return m_shown.v; }  ///< (|V| x 3, m/s)
     /// World steps that a cloth step is long, where its stepper takes steps of any length; the
     /// nodes are interpolated. From the next cloth step on.
     void setRate(int world_steps) {
@@ -57,6 +58,12 @@ class SoftBodyStep {
         m_rate = world_steps;
     }
     Stepper& stepper() { return *m_stepper; }
+    /// Whether other cloth is near, which may touch it: its steps then end with the world's, if its
+    /// stepper takes steps of any length. From the next cloth step on.
+    void setMeeting(bool meeting) {
+        m_prepared = m_prepared && meeting == m_meeting;
+        m_meeting = meeting;
+    }
     /// A world step of h seconds in which the cloth is not stepped, but carried along as a whole:
     /// by its root, or by the means of its goals or pins. It then goes on from there.
     void carry(double h);
@@ -97,6 +104,19 @@ class SoftBodyStep {
     void solve();
     void endClothStep(BulletObstacles& obstacles);
     Result end(BulletObstacles& obstacles);
+    /// Whether begin() has begun a world step.
+    bool isStepping() const { return m_begun; }
+    /// After the cloth steps: dynamic bodies get what is theirs. Else end() does that.
+    void handOver(BulletObstacles& obstacles);
+    /// Between the last endClothStep() and end(): whether a cloth step ends with the world step.
+    /// Only then takeContact() may be called.
+    bool endsWithWorldStep() const;
+    /// Between the last endClothStep() and end(): what end() would show.
+    ClothState endOfWorldStep() const;
+    /// Moves the cloth to where others have pushed it.
+    /// @param x, v   |V| x 3 (m, m/s); pins where they are
+    /// @param depth  of the deepest node in an obstacle then (m)
+    void takeContact(const Points& x, const Points& v, double depth);
     /// Deepest node that is not pinned in an obstacle (m), as the last world step shows both. In
     /// animated meshes only what the last cloth step ended with is known.
     double shownDepth() const { return m_depth; }
@@ -132,7 +152,6 @@ class SoftBodyStep {
     double clothStepLength() const;
     Pose carryingMotion() const;
     void slowDown(BulletObstacles& obstacles);
-    void showClothStep();
     void writeNodes();
     void measureDepth(BulletObstacles& obstacles);
     int stretchedAnchor() const;
@@ -152,20 +171,24 @@ class SoftBodyStep {
     bool m_continues = false;         ///< the present cloth step starts where the last one ended
     ClothSleep m_sleep;
     bool m_sliding_friction;
-    double m_time_scale = 1.0;  ///< time of the cloth over time of the world
-    double m_depth = 0.0;       ///< shownDepth()
-    double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
-    double m_world_h = 0.0;     ///< the same in the time of the world
-    double m_reach = 0.0;       ///< (m)
-    bool m_begun = false;       ///< the present world step steps the cloth
-    Box m_box;                  ///< where obstacles of the world step are looked for
-    Result m_result;            ///< of the present world step
-    Box m_cloth_box;            ///< where those of the present cloth step are
-    Boundary m_boundary;        ///< of the present cloth step
-    ClothState m_solved;        ///< its end, as the stepper has it
-    bool m_hang = false;        ///< it is solved together with bodies on anchors
-    int m_rate = 1;             ///< world steps in a cloth step
-    bool m_prepared = false;    ///< the stepper knows how long its steps are
+    double m_time_scale = 1.0;    ///< time of the cloth over time of the world
+    double m_depth = 0.0;         ///< shownDepth()
+    double m_h = 0.0;             ///< the present world step, in the time of the cloth (s)
+    double m_world_h = 0.0;       ///< the same in the time of the world
+    double m_reach = 0.0;         ///< (m)
+    bool m_begun = false;         ///< the present world step steps the cloth
+    bool m_handed_over = false;   ///< in the present world step
+    Box m_box;                    ///< where obstacles of the world step are looked for
+    Result m_result;              ///< of the present world step
+    Box m_cloth_box;              ///< where those of the present cloth step are
+    Boundary m_boundary;          ///< of the present cloth step
+    ClothState m_solved;          ///< its end, as the stepper has it
+    bool m_hang = false;          ///< it is solved together with bodies on anchors
+    int m_rate = 1;               ///< world steps in a cloth step
+    bool m_prepared = false;      ///< the stepper knows how long its steps are
+    bool m_meeting = false;       ///< other cloth is near
+    bool m_pushed = false;        ///< by other cloth, since the last cloth step
+    double m_pushed_depth = 0.0;  ///< (m), see takeContact()
     StepSpan m_cloth_step;
     ClothState m_shown;    ///< what the nodes say, in doubles
     Points m_impulse;      ///< |V| x 3 (N s): forces of the world steps since the last cloth step
