@@ -675,6 +675,13 @@ std::vector<std::vector<btGnnSoftBodySolver::Stepped>> btGnnSoftBodySolver::find
         cloth[k].entry->meets = meets[k] != 0;
         cloth[k].entry->step->setMeeting(meets[k] != 0);
     }
+    for (const auto& group : result) {
+        std::vector<cloth::ClothContacts::Member> members;
+        for (const Stepped& one : group)
+            if (one.body->isActive())
+                members.push_back({one.body, one.entry->step.get(), one.entry->built});
+        m_contacts->expect(members);
+    }
     return result;
 }
 
@@ -761,16 +768,18 @@ void btGnnSoftBodySolver::processCollision(btSoftBody* body,
 void btGnnSoftBodySolver::processCollision(btSoftBody* body, btSoftBody* otherBody) {
     const bool isCloth = steppingOf(body) == Stepping::cloth;
     const bool isOtherCloth = steppingOf(otherBody) == Stepping::cloth;
-    if (isCloth && isOtherCloth) return;
+    if (isCloth && isOtherCloth && m_contacts) return;
     if (steppingOf(body) == Stepping::bullet && steppingOf(otherBody) == Stepping::bullet)
         body->defaultCollisionHandler(otherBody);
     else if (wouldCollide(*body, *otherBody))
         say((isCloth ? cloth::softBodyName(*body) : cloth::softBodyName(*otherBody)) +
             ": it meets " +
             (isCloth ? cloth::softBodyName(*otherBody) : cloth::softBodyName(*body)) +
-            ", which Bullet steps, and both ask for contact between soft bodies (VF_SS or CL_SS), "
-            "but cloth passes through such bodies. Remedy: a rigid body or setAnimatedObstacle() "
-            "for what the cloth is to touch, or detach() the cloth");
+            ", and both ask for contact between soft bodies (VF_SS or CL_SS), but cloth passes "
+            "through soft bodies. Remedy: btGnnSolverSettings::layerThickness where both are "
+            "cloth, "
+            "merge_garments() for layers of one character, a rigid body or setAnimatedObstacle() "
+            "for what lies below, or detach() both");
 }
 
 const cloth::Stepper* btGnnSoftBodySolver::stepperOf(const btSoftBody* body) const {

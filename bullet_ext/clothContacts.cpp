@@ -219,8 +219,8 @@ std::optional<double> energyOf(const std::vector<ClothContacts::Member>& group,
     return energy;
 }
 
-/// Takes energy (J) from the motion of the vertices of mass relative to their mean motion, which
-/// keeps their momentum.
+/// Takes energy (J) that came from nowhere from the motion of the vertices of mass relative to
+/// their mean motion, which keeps their momentum.
 void calm(double surplus, const VectorX& masses, Points& v) {
     const double mass = masses.sum();
     if (!(surplus > 0.0) || !(mass > 0.0)) return;
@@ -283,12 +283,30 @@ std::vector<std::vector<size_t>> ClothContacts::groups(
     return result;
 }
 
-ClothContacts::Merged& ClothContacts::mergedOf(const std::vector<Member>& group) {
+std::vector<ClothContacts::Part> ClothContacts::partsOf(const std::vector<Member>& group) const {
     std::vector<Part> parts;
     for (const Member& member : group)
         parts.push_back({member.build, member.step->endsWithWorldStep(),
                          massRatio(*member.body, member.step->garment()),
                          static_cast<double>(member.body->m_cfg.kDF)});
+    return parts;
+}
+
+void ClothContacts::expect(const std::vector<Member>& group) {
+    std::vector<Part> parts = partsOf(group);
+    for (Part& part : parts) part.moves = true;
+    const auto it = m_merged.find(parts);
+    if (it == m_merged.end() || it->second.used + 1 != m_step || !(it->second.h > 0.0)) return;
+    Merged& merged = it->second;
+    const Points& forecast = merged.contacts->forecast(m_h / merged.h);
+    for (size_t k = 0; k < group.size(); ++k)
+        group[k].step->expectContact(
+            forecast.middleRows(merged.first[k], merged.first[k + 1] - merged.first[k]));
+    merged.expected = m_step;
+}
+
+ClothContacts::Merged& ClothContacts::mergedOf(const std::vector<Member>& group) {
+    const std::vector<Part> parts = partsOf(group);
     Merged& merged = m_merged[parts];
     merged.used = m_step;
     if (merged.contacts) return merged;
@@ -323,6 +341,8 @@ ClothContacts::Merged& ClothContacts::mergedOf(const std::vector<Member>& group)
 ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
                                              BulletObstacles& obstacles) {
     Merged& merged = mergedOf(group);
+    if (merged.expected != m_step) merged.contacts->forget_forecast();
+    merged.h = m_h;
     const Eigen::Index all = merged.first.back();
     for (Points* points : {&merged.x0, &merged.v0, &merged.x, &merged.v}) points->resize(all, 3);
     for (size_t k = 0; k < group.size(); ++k) {
@@ -346,7 +366,13 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     };
     const std::optional<double> start = energy(merged.x0, merged.v0), alone = energy(x1, v1),
                                 now = energy(merged.x, merged.v);
-    if (start && alone && now) calm(*now - std::max(*start, *alone), merged.masses, merged.v);
+    if (start && alone && now) {
+        const bool worked_on = std::any_of(group.begin(), group.end(), [](const Member& member) {
+            return member.step->isWorkedOn() || !member.step->endsWithWorldStep();
+        });
+        const double most = worked_on ? std::max(*start, *alone) : *start;
+        calm(*now - most, merged.masses, merged.v);
+    }
     for (size_t k = 0; k < group.size(); ++k) {
         if (!group[k].step->endsWithWorldStep()) continue;
         const Eigen::Index first = merged.first[k], count = merged.first[k + 1] - first;

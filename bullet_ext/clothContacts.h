@@ -44,6 +44,8 @@ class ClothContacts {
     /// Bodies of `bodies` that may meet in the world step, as their indices, ascending, two or more
     /// in each group.
     std::vector<std::vector<size_t>> groups(const std::vector<const btSoftBody*>& bodies) const;
+    /// Before SoftBodyStep::begin() of all members: tells them what contacts are expected.
+    void expect(const std::vector<Member>& group);
     /// After the cloth steps of all members, before SoftBodyStep::end().
     Report resolve(const std::vector<Member>& group, BulletObstacles& obstacles);
 
@@ -60,9 +62,12 @@ class ClothContacts {
         std::unique_ptr<LayerContacts> contacts;
         std::vector<Proximity> proximity;  ///< |members|
         long used = 0;                     ///< world step of the last use
+        long expected = 0;                 ///< world step of the last forecast
+        double h = 0.0;                    ///< length of the last step (s)
         Points x0, v0, x, v;
     };
 
+    std::vector<Part> partsOf(const std::vector<Member>& group) const;
     Merged& mergedOf(const std::vector<Member>& group);
     void forgetUnused();
 

@@ -71,7 +71,9 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     m_h = std::min(h * m_time_scale, kLongest);
     m_reach = reach;
     m_result = Result();
-    m_begun = m_handed_over = false;
+    m_begun = m_handed_over = m_worked_on = false;
+    Points expected;
+    expected.swap(m_expected);
     if (m_goals) m_goals->beginStep(h);
     if (m_root) m_root->beginStep(h);
     // Nodes changed since the solver looked at them: next step.
@@ -84,6 +86,7 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     takePins();
     m_box = boxAhead(m_shown, m_h, reach);
     obstacles.watch(m_body, m_box.low, m_box.high);
+    m_expected.swap(expected);
     return m_begun = true;
 }
 
@@ -277,7 +280,22 @@ Boundary SoftBodyStep::boundaryOfClothStep(BulletObstacles& obstacles) {
     }
     pullSoftAnchors(m_body, *m_garment, m_cloth_step.from, m_cloth_step.length, m_h,
                     boundary.accelerations);
+    m_worked_on = m_worked_on || boundary.accelerations.size() > 0 || m_garment->has_goals() ||
+                  (m_root && m_root->given()) || m_pins_before != m_pins_after ||
+                  !obstaclesStand(boundary);
+    addExpected(boundary.accelerations);
     return boundary;
+}
+
+/// What other cloth does to it in this cloth step, from what it did in the last one.
+void SoftBodyStep::addExpected(Points& accelerations) {
+    if (m_expected.rows() != m_garment->vertex_count()) return;
+    const VectorX masses = massRatio(m_body, *m_garment) * m_garment->masses();
+    if (accelerations.rows() == 0) accelerations.setZero(m_expected.rows(), 3);
+    for (Eigen::Index i = 0; i < m_expected.rows(); ++i)
+        if (masses[i] > 0.0)
+            accelerations.row(i) += m_expected.row(i) / (masses[i] * m_cloth_step.length);
+    m_expected.resize(0, 3);
 }
 
 /// The next cloth step starts where the last one ended, or where the nodes are.

@@ -111,8 +111,13 @@ class SoftBodyStep {
     /// Between the last endClothStep() and end(): whether a cloth step ends with the world step.
     /// Only then takeContact() may be called.
     bool endsWithWorldStep() const;
+    /// Whether forces, pins, goals or obstacles that move may have given the cloth energy in this
+    /// world step.
+    bool isWorkedOn() const { return m_worked_on; }
     /// Between the last endClothStep() and end(): what end() would show.
     ClothState endOfWorldStep() const;
+    /// Before begin(): impulses of other cloth that the step has to expect (|V| x 3, N s).
+    void expectContact(const Points& impulses) { m_expected = impulses; }
     /// Moves the cloth to where others have pushed it.
     /// @param x, v   |V| x 3 (m, m/s); pins where they are
     /// @param depth  of the deepest node in an obstacle then (m)
@@ -145,6 +150,7 @@ class SoftBodyStep {
     Points pinsAt(double time) const;
     static Box boxAhead(const ClothState& state, double time, double reach);
     Boundary boundaryOfClothStep(BulletObstacles& obstacles);
+    void addExpected(Points& accelerations);
     void startClothStep(bool first_of_step);
     void carryClothStep();
     bool looksAhead() const;
@@ -185,8 +191,10 @@ class SoftBodyStep {
     ClothState m_solved;          ///< its end, as the stepper has it
     bool m_hang = false;          ///< it is solved together with bodies on anchors
     int m_rate = 1;               ///< world steps in a cloth step
+    bool m_worked_on = false;     ///< isWorkedOn()
     bool m_prepared = false;      ///< the stepper knows how long its steps are
     bool m_meeting = false;       ///< other cloth is near
+    Points m_expected;            ///< |V| x 3 (N s) or empty, see expectContact()
     bool m_pushed = false;        ///< by other cloth, since the last cloth step
     double m_pushed_depth = 0.0;  ///< (m), see takeContact()
     StepSpan m_cloth_step;

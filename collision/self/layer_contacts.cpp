@@ -9,9 +9,9 @@
 namespace cloth {
 namespace {
 
-constexpr int sweeps = 60;              // of CoulombContacts
-constexpr double enough = 1e-6;         // m, and m/s: a sweep that moves less is the last
-constexpr double recovery = 0.1;        // of what is missing to the thickness, made up in a step
+constexpr int sweeps = 20;              // of CoulombContacts
+constexpr double enough = 1e-5;         // m, and m/s: a sweep that moves less is the last
+constexpr double recovery = 0.1;        // of what is missing to half the thickness, in a step
 constexpr double hold_distance = 1e-2;  // m: vertices farther from obstacles need no holding
 constexpr int passes = 3;               // layers, obstacles, layers, ...: layers have the last word
 constexpr double fair_depth = 1e-6;     // m: vertices less deep in an obstacle are at its surface
@@ -37,15 +37,6 @@ VectorX mobilities(const Garment& all, const VectorX& masses) {
     return result;
 }
 
-CoulombContacts::Contact contact_of(const SelfPair& pair, double friction) {
-    CoulombContacts::Contact contact;
-    contact.vertex = pair.elements.vertex;
-    contact.weight = pair.weight;
-    contact.normal = pair.normal;
-    contact.friction = friction;
-    return contact;
-}
-
 }  // namespace
 
 void check_layer_contacts(const LayerContactSettings& settings) {
@@ -60,9 +51,12 @@ LayerContacts::LayerContacts(const Garment& all, std::vector<int> part, const Ve
       m_friction(std::move(friction)),
       m_proximity(all, settings.thickness, parts_of_faces(all, m_part)),
       m_resolver(all, resolver_settings(settings), masses, parts_of_faces(all, m_part)),
-      m_contacts(mobilities(all, masses)),
-      m_held(m_part.size(), 0) {
+      m_contacts(mobilities(all, masses)) {
     check_layer_contacts(settings);
+}
+
+LayerContacts::Key LayerContacts::key_of(const SelfPair& pair) {
+    return {pair.elements.edges ? 1 : 0, pair.elements.element[0], pair.elements.element[1]};
 }
 
 double LayerContacts::friction_of(const SelfPair& pair) const {
@@ -72,13 +66,22 @@ double LayerContacts::friction_of(const SelfPair& pair) const {
     return std::max(of(pair.elements.vertex[0]), of(pair.elements.vertex[3]));
 }
 
+CoulombContacts::Contact LayerContacts::contact_of(const SelfPair& pair) const {
+    CoulombContacts::Contact contact;
+    contact.vertex = pair.elements.vertex;
+    contact.weight = pair.weight;
+    contact.normal = pair.normal;
+    contact.friction = friction_of(pair);
+    return contact;
+}
+
 LayerContacts::Report LayerContacts::resolve(const Points& x0, double distance, Outside* outside,
                                              Points& x, Points& v) {
     Report report;
-    m_pushed.clear();
     m_proximity.find(x0, x - x0, m_settings.thickness, m_settings.threads);
+    m_touching = m_proximity.pairs();
     m_rows.clear();
-    for (const SelfPair& pair : m_proximity.pairs())
+    for (const SelfPair& pair : m_touching)
         m_rows.insert(m_rows.end(), pair.elements.vertex.begin(), pair.elements.vertex.end());
     std::sort(m_rows.begin(), m_rows.end());
     m_rows.erase(std::unique(m_rows.begin(), m_rows.end()), m_rows.end());
@@ -87,12 +90,11 @@ LayerContacts::Report LayerContacts::resolve(const Points& x0, double distance, 
         return outside ? outside->contacts() : m_none;
     };
     separate(x0, distance, contacts(), x);
-    report.pairs = static_cast<int>(m_pushed.size());
     for (int pass = 0; pass < passes; ++pass) {
         const SelfResolveReport resolved = m_resolver.resolve(x0, contacts(), distance, x);
         report.crossings += resolved.crossings;
         report.left = resolved.left;
-        m_pushed.insert(m_pushed.end(), m_resolver.pairs().begin(), m_resolver.pairs().end());
+        m_touching.insert(m_touching.end(), m_resolver.pairs().begin(), m_resolver.pairs().end());
         if (pass == 0)
             m_rows.insert(m_rows.end(), m_resolver.moved().begin(), m_resolver.moved().end());
         else
@@ -100,23 +102,23 @@ LayerContacts::Report LayerContacts::resolve(const Points& x0, double distance, 
         if (!outside || m_rows.empty() || pass + 1 == passes) break;
         if (outside->push_out(m_rows, x) < fair_depth) break;
     }
-    if (!m_pushed.empty()) slow_down(v);
+    report.pairs = slow_down(v);
     return report;
 }
 
+/// Pairs that come nearer than half the thickness.
 void LayerContacts::separate(const Points& x0, double distance, const SurfaceContacts& outside,
                              Points& x) {
     const std::vector<SelfPair>& pairs = m_proximity.pairs();
-    if (pairs.empty()) return;
     m_contacts.clear();
     for (const SelfPair& pair : pairs) {
-        CoulombContacts::Contact contact = contact_of(pair, friction_of(pair));
-        const double missing = m_settings.thickness - pair.distance;
-        contact.height = missing > 0.0 ? pair.distance + recovery * missing : m_settings.thickness;
-        for (size_t k = 0; k < 4; ++k)
-            contact.target += pair.weight[k] * x0.row(pair.elements.vertex[k]).transpose();
-        m_contacts.add(contact);
+        CoulombContacts::Contact contact = contact_of(pair);
+        contact.friction = 0.0;  // positions follow velocities, which rub
+        const double before = pair.distance_at(x0), kept = 0.5 * m_settings.thickness;
+        contact.height = before < kept ? before + recovery * (kept - before) : kept;
+        if (pair.distance_at(x) < contact.height) m_contacts.add(contact);
     }
+    if (m_contacts.size() == 0) return;
     if (!outside.obstacle.empty())
         for (const int i : m_rows) {
             if (!outside.has(i) || !(outside.distance[i] < hold_distance)) continue;
@@ -126,14 +128,57 @@ void LayerContacts::separate(const Points& x0, double distance, const SurfaceCon
             m_contacts.add(plane);
         }
     m_contacts.solve(sweeps, enough, x);
-    for (size_t p = 0; p < pairs.size(); ++p)
-        if (m_contacts.push(p) > 0.0) m_pushed.push_back(pairs[p]);
 }
 
-void LayerContacts::slow_down(Points& v) {
+/// Returns the number of pairs that push each other.
+int LayerContacts::slow_down(Points& v) {
     m_contacts.clear();
-    for (const SelfPair& pair : m_pushed) m_contacts.add(contact_of(pair, friction_of(pair)));
+    m_index.clear();
+    for (const Lasting& lasting : m_lasting) {
+        CoulombContacts::Contact contact = contact_of(lasting.pair);
+        contact.push = lasting.push;
+        contact.rub = lasting.rub;
+        m_index.emplace(key_of(lasting.pair), m_contacts.size());
+        m_contacts.add(contact);
+    }
+    for (const SelfPair& pair : m_touching)
+        if (m_index.emplace(key_of(pair), m_contacts.size()).second)
+            m_contacts.add(contact_of(pair));
     m_contacts.solve(sweeps, enough, v);
+    remember();
+    return static_cast<int>(m_pushes.size());
+}
+
+/// What was pushed in the step before, too, lasts: as far as it was the less.
+void LayerContacts::remember() {
+    m_lasting.clear();
+    std::map<Key, double> pushes;
+    for (const SelfPair& pair : m_touching) {
+        const Key key = key_of(pair);
+        const size_t contact = m_index.at(key);
+        const double push = m_contacts.push(contact);
+        if (!(push > 0.0) || !pushes.emplace(key, push).second) continue;
+        const auto before = m_pushes.find(key);
+        if (before == m_pushes.end()) continue;
+        const double lasts = std::min(push, before->second);
+        const Vec3 rub = m_contacts.rub(contact);
+        m_lasting.push_back(
+            {pair, lasts, (lasts / push) * (rub - rub.dot(pair.normal) * pair.normal)});
+    }
+    m_pushes.swap(pushes);
+}
+
+const Points& LayerContacts::forecast(double scale) {
+    m_forecast.setZero(static_cast<Eigen::Index>(m_part.size()), 3);
+    for (Lasting& lasting : m_lasting) {
+        lasting.push *= scale;
+        lasting.rub *= scale;
+        const Vec3 impulse = lasting.push * lasting.pair.normal + lasting.rub;
+        for (size_t k = 0; k < 4; ++k)
+            m_forecast.row(lasting.pair.elements.vertex[k]) +=
+                lasting.pair.weight[k] * impulse.transpose();
+    }
+    return m_forecast;
 }
 
 }  // namespace cloth

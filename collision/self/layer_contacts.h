@@ -1,6 +1,7 @@
 #pragma once
 
-#include <memory>
+#include <array>
+#include <map>
 #include <vector>
 
 #include "collision/proximity/proximity.h"
@@ -19,25 +20,28 @@ struct LayerContactSettings {
 /// @throws ArgumentError if a setting is out of range
 void check_layer_contacts(const LayerContactSettings& settings);
 
-/// Contact between pieces of cloth, after each of them has been stepped as if it was alone: what
-/// solver moved them does not count. Layers that one solver steps together (merge_garments(), with
+/// Contact between pieces of cloth, after each of them has been stepped by itself: what solver
+/// moved them does not count. Layers that one solver steps together (merge_garments(), with
 /// self-contact on) are the better choice where they can be chosen: there contact is part of the
 /// step.
 ///
 ///     LayerContacts contacts(all, part, masses, friction, settings);
+///     // each step: give forecast() / dt to the pieces as forces, step them, and then
 ///     contacts.resolve(x0, 5e-4, outside, x, v);
 ///
-/// 1. Elements of different pieces that come near each other are pushed apart, to the thickness or
-///    to what they were apart at t, whichever is less, and held by Coulomb's friction, where
-///    obstacles leave room: see CoulombContacts.
-/// 2. What would pass through each other all the same is put back, see SelfResolver.
-/// 3. The velocities get the impulses that keep these elements from approaching, with friction.
-///    Obstacles have no part in that: what presses a piece against an obstacle is in its velocity,
-///    and what it is to the obstacle is found by its next step.
+/// 1. What would pass through each other is put back, and elements of different pieces keep half
+///    the thickness, or what they had at t, if that is less, where obstacles leave room: see
+///    CoulombContacts and SelfResolver.
+/// 2. The velocities get the impulses that keep elements nearer than the thickness from
+///    approaching, with Coulomb's friction. Obstacles have no part in that: what presses a piece
+///    against an obstacle is in its velocity, and what it is to the obstacle is found by its next
+///    step.
+/// 3. Of impulses that last, the next step is told beforehand: forecast(). So stiff cloth bends
+///    under what lies on it within its own step, and what rests stays where it is. What was told
+///    too much of is taken back by 2.
 ///
 /// Momentum of vertices that are not pinned is kept, by positions but for obstacles, by velocities
-/// always. The impulses are inelastic: they add no kinetic energy. Cloth that meets nothing keeps
-/// its bits.
+/// and forecasts always. Cloth that meets nothing keeps its bits.
 class LayerContacts {
  public:
     /// The obstacles around the pieces, at t + dt.
@@ -72,10 +76,28 @@ class LayerContacts {
     /// @param x, v      |V| x 3 (m, m/s): at t + dt; those of pinned vertices do not change
     Report resolve(const Points& x0, double distance, Outside* outside, Points& x, Points& v);
 
+    /// Impulses of contact that the next step has to expect (|V| x 3, N s), of zero sum; those of
+    /// pinned vertices are what the pins have to take. If it is not given to the pieces,
+    /// forget_forecast().
+    /// @param scale  length of the next step over that of the last one
+    const Points& forecast(double scale = 1.0);
+    void forget_forecast() { m_lasting.clear(); }
+
  private:
+    using Key = std::array<int, 3>;  // edges or not, the elements
+    /// A contact that was there in two steps.
+    struct Lasting {
+        SelfPair pair;
+        double push;  ///< (N s)
+        Vec3 rub;     ///< (N s)
+    };
+
+    static Key key_of(const SelfPair& pair);
     double friction_of(const SelfPair& pair) const;
+    CoulombContacts::Contact contact_of(const SelfPair& pair) const;
     void separate(const Points& x0, double distance, const SurfaceContacts& outside, Points& x);
-    void slow_down(Points& v);
+    int slow_down(Points& v);
+    void remember();
 
     LayerContactSettings m_settings;
     std::vector<int> m_part;
@@ -84,9 +106,12 @@ class LayerContacts {
     SelfResolver m_resolver;
     CoulombContacts m_contacts;
     SurfaceContacts m_none;
-    std::vector<char> m_held;        ///< |V|: by a plane of an obstacle
-    std::vector<SelfPair> m_pushed;  ///< pairs that pushed each other in this step
+    std::vector<SelfPair> m_touching;  ///< in this step, some twice
+    std::vector<Lasting> m_lasting;    ///< in the forecast of this step, then of the next one
+    std::map<Key, double> m_pushes;    ///< of the last step (N s), those above 0
+    std::map<Key, size_t> m_index;     ///< of the contacts of the velocities
     std::vector<int> m_rows;
+    Points m_forecast;
 };
 
 }  // namespace cloth

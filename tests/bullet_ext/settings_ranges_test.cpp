@@ -14,6 +14,10 @@ TEST(SettingsRanges, GnnSolver) {
     };
     expect_range("btGnnSolverSettings.obstacleReach", &S::obstacleReach, 0.02, 1.0, use);
     expect_range("btGnnSolverSettings.sleepMotion", &S::sleepMotion, 0.0, 0.05, use);
+    expect_range("btGnnSolverSettings.layerThickness", &S::layerThickness, 1e-3, 2e-2, use);
+    S off;
+    off.layerThickness = 0.0;
+    use(off);
     expect_range("btGnnSolverSettings.maxFailedSteps", &S::maxFailedSteps, 1, 1000000, use);
 }
 

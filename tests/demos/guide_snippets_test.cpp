@@ -235,6 +235,16 @@ TEST_F(GuideSnippets, TimeLimit) {
     EXPECT_THROW(btGnnSoftBodySolver(physics, settings), cloth::ArgumentError);
 }
 
+TEST_F(GuideSnippets, ClothThatTouchesCloth) {
+    const auto physics = [](const cloth::Garment& garment) { return cloth::make_cloth(garment); };
+    btGnnSolverSettings touching;
+    touching.layerThickness = 4e-3;  // m
+    btGnnSoftBodySolver solver(physics, touching);
+    EXPECT_EQ(solver.status().touchingPairs, 0);
+    touching.layerThickness = 0.1;
+    EXPECT_THROW(btGnnSoftBodySolver(physics, touching), cloth::ArgumentError);
+}
+
 TEST_F(GuideSnippets, BodiesOfSmpl) {
     const std::string model_file = testing::TempDir() + "guide_model.npz",
                       motion_file = testing::TempDir() + "guide_motion.npz";

@@ -18,6 +18,20 @@ void drapes(SceneWorld& scene) {
     }
 }
 
+/// Five sheets that touch each other, each turned against the one below it.
+void layers(SceneWorld& scene) {
+    scene.addRigid(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
+    scene.addRigid(new btBoxShape({0.25f, 0.2f, 0.25f}), {0, 0.5f, 0})->setFriction(1);
+    for (int k = 0; k < 5; ++k) {
+        const auto level = static_cast<btScalar>(k);
+        btSoftBody* const sheet = scene.addSheet({0, 0, 0}, 0.8f, kNodesOfEach);
+        sheet->rotate(btQuaternion({0, 1, 0}, 0.25f * level));
+        sheet->translate({0, 0.72f + 0.05f * level, 0});
+        sheet->m_cfg.kDF = 0.5f;
+        sheet->m_cfg.collisions |= btSoftBody::fCollision::VF_SS;
+    }
+}
+
 }  // namespace
 
 std::vector<SceneRecipe> manySheets() {
@@ -27,5 +41,14 @@ std::vector<SceneRecipe> manySheets() {
              false,
              nullptr,
              {4.5f, 4, 7},
-             {0, 0, 1.5f}}};
+             {0, 0, 1.5f}},
+            {"layers",
+             "five sheets fall on a table, one on another",
+             layers,
+             false,
+             nullptr,
+             {1.5f, 1.5f, 2.2f},
+             {0, 0.4f, 0},
+             OutsideWork::none,
+             4e-3}};
 }

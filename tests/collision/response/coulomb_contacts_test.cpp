@@ -73,15 +73,28 @@ TEST(CoulombContacts, HeightsAndTargetsSayWhereToStop) {
     EXPECT_LT((x.row(0) - Eigen::RowVector3d(-1.0, 0.25, 0.5)).norm(), exact);
 }
 
-TEST(CoulombContacts, ASecondSolveBeginsAnew) {
+TEST(CoulombContacts, WhatWasPushedTooMuchBeforehandIsTakenBack) {
+    for (const double given : {0.5, 2.0, 2.5, 9.0}) {
+        CoulombContacts contacts(inverse_masses(1.0));
+        Contact contact = on_ground(0.5);
+        contact.push = given;
+        contact.rub = Vec3(-0.25, 0.0, 0.0);
+        contacts.add(contact);
+        Points v = moving(3.0 - 0.25, 2.0 - given);
+        contacts.solve(10, 0.0, v);
+        EXPECT_NEAR(contacts.push(0), 2.0, exact) << given;
+        EXPECT_NEAR(contacts.rub(0).x(), -1.0, exact) << given;
+        EXPECT_NEAR(v(0, 0), 2.0, exact) << given;
+        EXPECT_NEAR(v(0, 1), 0.0, exact) << given;
+    }
     CoulombContacts contacts(inverse_masses(1.0));
-    contacts.add(on_ground(0.5));
-    Points first = moving(3.0, 2.0), second = first;
-    contacts.solve(10, 0.0, first);
-    contacts.solve(10, 0.0, second);
-    EXPECT_EQ(first, second);
-    contacts.clear();
-    EXPECT_EQ(contacts.size(), 0u);
+    Contact contact = on_ground(0.5);
+    contact.push = 1.0;
+    contacts.add(contact);
+    Points v = moving(0.0, -3.0);  // it leaves faster than it was pushed
+    contacts.solve(10, 0.0, v);
+    EXPECT_EQ(contacts.push(0), 0.0);
+    EXPECT_NEAR(v(0, 1), 2.0, exact);
 }
 
 TEST(CoulombContacts, WhereNothingMovesNothingHappens) {
