@@ -696,7 +696,12 @@ void btGnnSoftBodySolver::resolveContacts(std::vector<Stepped> group) {
             members.push_back({one.body, one.entry->step.get(), one.entry->built});
     if (members.size() > 1) {
         const auto begin = std::chrono::steady_clock::now();
-        const cloth::ClothContacts::Report report = m_contacts->resolve(members, m_obstacles);
+        cloth::ClothContacts::Report report;
+        try {
+            report = m_contacts->resolve(members, m_obstacles);
+        } catch (const std::exception& error) {
+            say(error.what());
+        }
         const std::chrono::duration<double, std::milli> passed =
             std::chrono::steady_clock::now() - begin;
         m_status.times.contact += passed.count();

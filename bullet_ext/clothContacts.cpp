@@ -18,8 +18,8 @@ namespace cloth {
 
 namespace {
 
-constexpr double kObstacleDistance =
-    5e-4;  // m: that nodes keep from obstacles when they are pushed
+/// That nodes keep from obstacles when they are pushed (m).
+constexpr double kObstacleDistance = 5e-4;
 
 struct Box {
     Vec3 low, high;
@@ -89,17 +89,10 @@ class Obstacles : public LayerContacts::Outside {
         if (m_parts.empty()) look(x);
         double deepest = 0.0;
         auto row = rows.begin();
-        std::vector<int> sorted;
-        if (!std::is_sorted(rows.begin(), rows.end())) {
-            sorted = rows;
-            std::sort(sorted.begin(), sorted.end());
-            row = sorted.begin();
-        }
         for (size_t k = 0; k < m_parts.size(); ++k) {
             Part& part = m_parts[k];
             part.rows.clear();
-            const auto end = sorted.empty() ? rows.end() : sorted.cend();
-            for (; row != end && *row < m_first[k + 1]; ++row) {
+            for (; row != rows.end() && *row < m_first[k + 1]; ++row) {
                 const auto i = static_cast<int>(*row - m_first[k]);
                 if (!pinned(k)[static_cast<size_t>(i)]) part.rows.push_back(i);
             }
@@ -220,16 +213,17 @@ std::optional<double> energyOf(const std::vector<ClothContacts::Member>& group,
 }
 
 /// Takes energy (J) that came from nowhere from the motion of the vertices of mass relative to
-/// their mean motion, which keeps their momentum.
-void calm(double surplus, const VectorX& masses, Points& v) {
+/// their mean motion, which keeps their momentum. Returns what is left.
+double calm(double surplus, const VectorX& masses, Points& v) {
     const double mass = masses.sum();
-    if (!(surplus > 0.0) || !(mass > 0.0)) return;
+    if (!(surplus > 0.0) || !(mass > 0.0)) return surplus;
     const Eigen::RowVector3d mean = (masses.transpose() * v) / mass;
     const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
-    if (!(moving > 0.0)) return;
+    if (!(moving > 0.0)) return surplus;
     const double kept = std::sqrt(1.0 - std::min(1.0, surplus / moving));
     for (Eigen::Index i = 0; i < masses.size(); ++i)
         if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
+    return surplus - moving;
 }
 
 }  // namespace
@@ -360,7 +354,8 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     Obstacles outside(group, merged.first, merged.x0, merged.proximity, obstacles, m_h);
     const LayerContacts::Report found =
         merged.contacts->resolve(merged.x0, kObstacleDistance, &outside, merged.x, merged.v);
-    if (found.pairs + found.crossings == 0) return {};
+    const Report report{found.pairs + found.crossings, found.left};
+    if (merged.x == x1 && merged.v == v1) return report;
     const auto energy = [&](const Points& x, const Points& v) {
         return energyOf(group, merged.first, merged.masses, x, v);
     };
@@ -371,7 +366,16 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
             return member.step->isWorkedOn() || !member.step->endsWithWorldStep();
         });
         const double most = worked_on ? std::max(*start, *alone) : *start;
-        calm(*now - most, merged.masses, merged.v);
+        double left = calm(*now - most, merged.masses, merged.v);
+        // All of the way from x0 to x is free of crossings. What fabric took up is left out of it.
+        for (const double part : {0.5, 0.25, 0.0}) {
+            if (worked_on || !(left > 0.0)) break;
+            const Points x = merged.x0 + part * (merged.x - merged.x0);
+            left = energy(x, merged.v).value_or(most) - most;
+            if (left > 0.0 && part > 0.0) continue;
+            merged.x = x;
+            break;
+        }
     }
     for (size_t k = 0; k < group.size(); ++k) {
         if (!group[k].step->endsWithWorldStep()) continue;
@@ -379,7 +383,7 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
         group[k].step->takeContact(merged.x.middleRows(first, count),
                                    merged.v.middleRows(first, count), outside.deepest(k, merged.x));
     }
-    return {found.pairs + found.crossings, found.left};
+    return report;
 }
 
 }  // namespace cloth

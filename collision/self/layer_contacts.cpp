@@ -83,8 +83,7 @@ LayerContacts::Report LayerContacts::resolve(const Points& x0, double distance, 
     m_rows.clear();
     for (const SelfPair& pair : m_touching)
         m_rows.insert(m_rows.end(), pair.elements.vertex.begin(), pair.elements.vertex.end());
-    std::sort(m_rows.begin(), m_rows.end());
-    m_rows.erase(std::unique(m_rows.begin(), m_rows.end()), m_rows.end());
+    sort_rows();
     if (outside && !m_rows.empty()) outside->push_out(m_rows, x);
     const auto contacts = [&]() -> const SurfaceContacts& {
         return outside ? outside->contacts() : m_none;
@@ -95,15 +94,19 @@ LayerContacts::Report LayerContacts::resolve(const Points& x0, double distance, 
         report.crossings += resolved.crossings;
         report.left = resolved.left;
         m_touching.insert(m_touching.end(), m_resolver.pairs().begin(), m_resolver.pairs().end());
-        if (pass == 0)
-            m_rows.insert(m_rows.end(), m_resolver.moved().begin(), m_resolver.moved().end());
-        else
-            m_rows = m_resolver.moved();
+        if (pass > 0) m_rows.clear();
+        m_rows.insert(m_rows.end(), m_resolver.moved().begin(), m_resolver.moved().end());
+        sort_rows();
         if (!outside || m_rows.empty() || pass + 1 == passes) break;
         if (outside->push_out(m_rows, x) < fair_depth) break;
     }
     report.pairs = slow_down(v);
     return report;
+}
+
+void LayerContacts::sort_rows() {
+    std::sort(m_rows.begin(), m_rows.end());
+    m_rows.erase(std::unique(m_rows.begin(), m_rows.end()), m_rows.end());
 }
 
 /// Pairs that come nearer than half the thickness.

@@ -48,8 +48,8 @@ class LayerContacts {
     class Outside {
      public:
         virtual ~Outside() = default;
-        /// Brings the contacts of these vertices of x up to date, and moves those that are nearer
-        /// to an obstacle than the distance out to it.
+        /// Brings the contacts of these vertices of x up to date (ascending), and moves those
+        /// nearer to an obstacle than the distance out to it.
         /// @return  how deep the deepest of them was inside (m)
         virtual double push_out(const std::vector<int>& rows, Points& x) = 0;
         /// Nearest points of x as push_out() left it (|V|); empty: there are no obstacles.
@@ -96,6 +96,7 @@ class LayerContacts {
     double friction_of(const SelfPair& pair) const;
     CoulombContacts::Contact contact_of(const SelfPair& pair) const;
     void separate(const Points& x0, double distance, const SurfaceContacts& outside, Points& x);
+    void sort_rows();
     int slow_down(Points& v);
     void remember();
 
