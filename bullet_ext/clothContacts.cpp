@@ -213,17 +213,17 @@ std::optional<double> energyOf(const std::vector<ClothContacts::Member>& group,
 }
 
 /// Takes energy (J) that came from nowhere from the motion of the vertices of mass relative to
-/// their mean motion, which keeps their momentum. Returns what is left.
-double calm(double surplus, const VectorX& masses, Points& v) {
+/// their mean motion, which keeps their momentum. What more the fabric took up, it keeps: cloth
+/// that is held back for it hangs in the air.
+void calm(double surplus, const VectorX& masses, Points& v) {
     const double mass = masses.sum();
-    if (!(surplus > 0.0) || !(mass > 0.0)) return surplus;
+    if (!(surplus > 0.0) || !(mass > 0.0)) return;
     const Eigen::RowVector3d mean = (masses.transpose() * v) / mass;
     const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
-    if (!(moving > 0.0)) return surplus;
+    if (!(moving > 0.0)) return;
     const double kept = std::sqrt(1.0 - std::min(1.0, surplus / moving));
     for (Eigen::Index i = 0; i < masses.size(); ++i)
         if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
-    return surplus - moving;
 }
 
 }  // namespace
@@ -366,16 +366,7 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
             return member.step->isWorkedOn() || !member.step->endsWithWorldStep();
         });
         const double most = worked_on ? std::max(*start, *alone) : *start;
-        double left = calm(*now - most, merged.masses, merged.v);
-        // All of the way from x0 to x is free of crossings. What fabric took up is left out of it.
-        for (const double part : {0.5, 0.25, 0.0}) {
-            if (worked_on || !(left > 0.0)) break;
-            const Points x = merged.x0 + part * (merged.x - merged.x0);
-            left = energy(x, merged.v).value_or(most) - most;
-            if (left > 0.0 && part > 0.0) continue;
-            merged.x = x;
-            break;
-        }
+        calm(*now - most, merged.masses, merged.v);
     }
     for (size_t k = 0; k < group.size(); ++k) {
         if (!group[k].step->endsWithWorldStep()) continue;

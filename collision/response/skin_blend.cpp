@@ -8,8 +8,8 @@ namespace cloth {
 
 namespace {
 
-constexpr int kPushes = 4;     // of a vertex that comes too near to another surface
-constexpr double kOut = 1e-7;  // m: what rounding leaves of a push
+constexpr int kPushesToSkin = 4;  // of a vertex that comes too near to another surface
+constexpr double kOut = 1e-7;     // m: what rounding leaves of a push
 
 SkinBlendSettings checked(const SkinBlendSettings& settings) {
     settings.check();
@@ -59,7 +59,7 @@ ResolveReport SkinBlend::follow(const Points& simulated, const Points& skinned,
     if (ignored.size() == static_cast<size_t>(m_x.rows())) limits.ignored = &ignored;
     m_contacts.clear();
     ResolveReport report = resolve_penetration(m_proximity, boundary, m_settings.distance, m_x,
-                                               m_contacts, kPushes, limits);
+                                               m_contacts, kPushesToSkin, limits);
     if (report.max_depth_after <= kOut) return report;
     report.max_depth_after = 0.0;
     for (Eigen::Index i = 0; i < m_x.rows(); ++i)
