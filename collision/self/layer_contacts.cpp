@@ -1,6 +1,7 @@
 #include "collision/self/layer_contacts.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "collision/proximity/direction.h"
@@ -53,6 +54,13 @@ LayerContacts::LayerContacts(const Garment& all, std::vector<int> part, const Ve
       m_resolver(all, resolver_settings(settings), masses, parts_of_faces(all, m_part)),
       m_contacts(mobilities(all, masses)) {
     check_layer_contacts(settings);
+}
+
+size_t LayerContacts::Hash::operator()(const Key& key) const {
+    const auto wide = [](int part) { return static_cast<std::uint64_t>(part); };
+    const std::uint64_t mixed =
+        (wide(key[0]) << 62U ^ wide(key[1]) << 31U ^ wide(key[2])) * 0x9e3779b97f4a7c15U;
+    return static_cast<size_t>(mixed ^ mixed >> 32U);
 }
 
 LayerContacts::Key LayerContacts::key_of(const SelfPair& pair) {
@@ -137,6 +145,7 @@ void LayerContacts::separate(const Points& x0, double distance, const SurfaceCon
 int LayerContacts::slow_down(Points& v) {
     m_contacts.clear();
     m_index.clear();
+    m_index.reserve(m_lasting.size() + m_touching.size());
     for (const Lasting& lasting : m_lasting) {
         CoulombContacts::Contact contact = contact_of(lasting.pair);
         contact.push = lasting.push;
@@ -155,7 +164,8 @@ int LayerContacts::slow_down(Points& v) {
 /// What was pushed in the step before, too, lasts: as far as it was the less.
 void LayerContacts::remember() {
     m_lasting.clear();
-    std::map<Key, double> pushes;
+    ByPair<double> pushes;
+    pushes.reserve(m_touching.size());
     for (const SelfPair& pair : m_touching) {
         const Key key = key_of(pair);
         const size_t contact = m_index.at(key);

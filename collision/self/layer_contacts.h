@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "collision/proximity/proximity.h"
@@ -85,6 +85,11 @@ class LayerContacts {
 
  private:
     using Key = std::array<int, 3>;  // edges or not, the elements
+    struct Hash {
+        size_t operator()(const Key& key) const;
+    };
+    template <typename Value>
+    using ByPair = std::unordered_map<Key, Value, Hash>;
     /// A contact that was there in two steps.
     struct Lasting {
         SelfPair pair;
@@ -109,8 +114,8 @@ class LayerContacts {
     SurfaceContacts m_none;
     std::vector<SelfPair> m_touching;  ///< in this step, some twice
     std::vector<Lasting> m_lasting;    ///< in the forecast of this step, then of the next one
-    std::map<Key, double> m_pushes;    ///< of the last step (N s), those above 0
-    std::map<Key, size_t> m_index;     ///< of the contacts of the velocities
+    ByPair<double> m_pushes;           ///< of the last step (N s), those above 0
+    ByPair<size_t> m_index;            ///< of the contacts of the velocities
     std::vector<int> m_rows;
     Points m_forecast;
 };
