@@ -239,8 +239,8 @@ TEST_F(GuideSnippets, ClothThatTouchesCloth) {
     const auto physics = [](const cloth::Garment& garment) { return cloth::make_cloth(garment); };
     btGnnSolverSettings touching;
     touching.layerThickness = 4e-3;  // m
-    btGnnSoftBodySolver solver(physics, touching);
-    EXPECT_EQ(solver.status().touchingPairs, 0);
+    btGnnSoftBodySolver layered(physics, touching);
+    EXPECT_EQ(layered.status().touchingPairs, 0);
     touching.layerThickness = 0.1;
     EXPECT_THROW(btGnnSoftBodySolver(physics, touching), cloth::ArgumentError);
 }
