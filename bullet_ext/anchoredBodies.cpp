@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "bullet_ext/softBodyGarment.h"
 
@@ -187,6 +188,28 @@ VectorX AnchoredBodies::residual(const Boundary& boundary, const ClothState& fro
     return result;
 }
 
+/// The incremental potential of the common step (J), without that of contacts; m_residual is its
+/// gradient. If the stepper does not know the fabric's, half the square of the residual.
+double AnchoredBodies::energy(const Stepper& stepper, const Boundary& boundary,
+                              const ClothState& from, const ClothState& to) const {
+    const std::optional<double> internal = stepper.internal_energy(to.x);
+    if (!internal) return 0.5 * m_residual.squaredNorm();
+    double sum = m_mass_ratio * *internal;
+    for (Eigen::Index i = 0; i < to.x.rows(); ++i) {
+        Vec3 change = (to.x.row(i) - from.x.row(i)) / m_length - from.v.row(i);
+        change -= m_length * boundary.gravity;
+        if (boundary.accelerations.size())
+            change -= m_length * boundary.accelerations.row(i).transpose();
+        sum += 0.5 * m_masses[i] * change.squaredNorm();
+    }
+    for (size_t b = 0; b < m_bodies.size(); ++b) {
+        const Vector6 change = turned(m_bodies[b].frame.transpose(), wayOf(b, m_u)) / m_length;
+        sum += 0.5 * m_u.segment<6>(static_cast<Eigen::Index>(6 * b)).squaredNorm() -
+               0.5 * change.dot(m_bodies[b].carried * change);
+    }
+    return sum;
+}
+
 void AnchoredBodies::limit(VectorX& u) const {
     for (size_t b = 0; b < m_bodies.size(); ++b) {
         const Vector6 way = wayOf(b, u);
@@ -223,16 +246,16 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
     const VectorX last = m_residual;
     m_residual = residual(boundary, from, to);
     if (!first) updateInverse(m_u - m_last_u, m_residual - last);
-    const double norm = m_residual.norm();
-    if (first || norm < m_least) {
-        m_least = norm;
+    const double merit = energy(stepper, boundary, from, to);
+    if (first || merit < m_least) {
+        m_least = merit;
         m_best_u = m_u;
         m_best_residual = m_residual;
         m_best = to;
         m_best_report = report;
     }
     m_last_u = m_u;
-    VectorX next = m_best_u - m_inverse * m_best_residual;
+    VectorX next = nextTrial(merit);
     limit(next);
     if (m_trials == kTrials || !next.allFinite() ||
         motion(m_u, m_u - m_follows * m_residual) < kClose) {
@@ -249,6 +272,21 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
             boundary.pin_targets.row(anchor.pin) = placeOf(m_bodies[b], anchor, way);
     }
     return true;
+}
+
+/// The step of Broyden's method from the best trial, if it leads downhill. A step that has made
+/// energy is cut to where a parabola through it and the best trial is least, unless that is far.
+VectorX AnchoredBodies::nextTrial(double merit) const {
+    constexpr double kNear = 0.5, kNearest = 0.1;  // of the last step
+    const VectorX last = m_u - m_best_u;
+    const double slope = m_best_residual.dot(last);
+    if (merit > m_least && slope < 0.0) {
+        const double part = -0.5 * slope / (merit - m_least - slope);
+        if (part < kNear) return m_best_u + std::max(kNearest, part) * last;
+    }
+    const VectorX step = -m_inverse * m_best_residual;
+    if (m_best_residual.dot(step) > 0.0) return m_best_u - m_follows * m_best_residual;
+    return m_best_u + step;
 }
 
 /// Broyden's, for a step s of u and the change y of the residual.

@@ -24,8 +24,9 @@ namespace cloth {
 /// of the cloth. Broyden's method finds it (Nocedal and Wright, Numerical Optimization, 2006,
 /// section 11.1), in coordinates in which the mass of the body and the anchored nodes is the
 /// identity. It goes on with the Jacobian of the last step, and begins with one that is too stiff
-/// rather than too soft. A body so heavy that the cloth hardly moves it takes one trial, others
-/// take up to eight. What is left after that, TwoWayCoupling hands to body and cloth.
+/// rather than too soft. The step is the minimum of an incremental potential, so trials are judged
+/// by that: one that makes energy is cut. A body so heavy that the cloth hardly moves it takes one
+/// trial, others take up to eight. What is left after that, TwoWayCoupling hands to body and cloth.
 class AnchoredBodies {
  public:
     /// Bodies that hard anchors of the cloth hold, as Bullet has moved them.
@@ -71,9 +72,12 @@ class AnchoredBodies {
     Vector6 wayOf(size_t body, const VectorX& u) const;
     Vec3 placeOf(const Hanging& hanging, const Anchor& anchor, const Vector6& way) const;
     VectorX residual(const Boundary& boundary, const ClothState& from, const ClothState& to) const;
+    double energy(const Stepper& stepper, const Boundary& boundary, const ClothState& from,
+                  const ClothState& to) const;
     void guessInverse();
     void findFollowing(const Points& x);
     void setInverse(size_t body, const Matrix6& mass, Eigen::MatrixXd& inverse) const;
+    VectorX nextTrial(double merit) const;
     void updateInverse(const VectorX& s, const VectorX& y);
     void limit(VectorX& u) const;
     double motion(const VectorX& u0, const VectorX& u1) const;
@@ -91,7 +95,7 @@ class AnchoredBodies {
     VectorX m_u, m_last_u;      ///< 6 for each body (sqrt J): root w / h, along its principal axes
     VectorX m_residual;
     VectorX m_best_u, m_best_residual;
-    double m_least = 0.0;  ///< its norm
+    double m_least = 0.0;  ///< its energy()
     ClothState m_best;
     StepReport m_best_report;
 };

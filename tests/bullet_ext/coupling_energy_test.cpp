@@ -198,7 +198,7 @@ struct Bounds {
     double stiff = 1.0;  ///< how much faster still where bodies hang on cloth that is as stiff as
                          ///< Bullet's
     bool balanced = true;  ///< whether energy counts. Light bodies beside stiff cloth make some in
-                           ///< one of forty worlds
+                           ///< one of seventy worlds
     double rare = 0.0;     ///< share of the worlds that may break a bound, by the times below: in
                            ///< chaos another rounding makes other worlds
 };
