@@ -146,8 +146,7 @@ struct ClosestFaceTree::Packet {
     std::array<std::array<Candidate, most_candidates>, lanes> candidates;
     Lanes<int> candidate_count = {};
 
-    Packet(const ClosestFaceTree& searched, const Query* of, int number, double radius,
-           FaceHit* found)
+    Packet(const ClosestFaceTree& searched, const Query* of, int number, FaceHit* found)
         : tree(searched), queries(of), count(number), hits(found) {
         Vec3 low = queries[0].x, high = low;
         for (int k = 1; k < count; ++k) {
@@ -156,11 +155,11 @@ struct ClosestFaceTree::Packet {
         }
         centre = 0.5 * (low + high);
         local_centre = (centre - tree.m_origin).cast<float>();
-        for (int k = 0; k < lanes; ++k) take(k, queries[k < count ? k : 0], k < count, radius);
+        for (int k = 0; k < lanes; ++k) take(k, queries[k < count ? k : 0], k < count);
         update_reach();
     }
 
-    void take(int lane, const Query& query, bool is_used, double radius) {
+    void take(int lane, const Query& query, bool is_used) {
         const auto k = static_cast<size_t>(lane);
         const Vec3 offset = query.x - centre;
         x[k] = offset[0], y[k] = offset[1], z[k] = offset[2];
@@ -172,7 +171,7 @@ struct ClosestFaceTree::Packet {
         if (!is_used) return;
         ignored_by_all &= query.ignored;
         FaceHit& hit = hits[lane] = {};
-        hit.squared = radius * radius;
+        hit.squared = query.radius * query.radius;
         if (query.hint >= 0 && (tree.limb(query.hint) & query.ignored) == 0)
             tree.try_face(query.x, query.hint, hit);
         bound[k] = widened(with_slack(static_cast<float>(hit.squared)));
@@ -261,13 +260,12 @@ struct ClosestFaceTree::Packet {
     }
 };
 
-void ClosestFaceTree::closest(const Query* queries, int count, double radius, Stack& stack,
-                              FaceHit* hits) const {
+void ClosestFaceTree::closest(const Query* queries, int count, Stack& stack, FaceHit* hits) const {
     if (count == 1) {
-        *hits = closest(queries->x, radius, queries->hint, stack, queries->ignored);
+        *hits = closest(queries->x, queries->radius, queries->hint, stack, queries->ignored);
         return;
     }
-    Packet together(*this, queries, count, radius, hits);
+    Packet together(*this, queries, count, hits);
     if (m_nodes.empty()) return;
     if (stack.size() < m_stack_size) stack.resize(m_stack_size);
     Entry* end = stack.data();

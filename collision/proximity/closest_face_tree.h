@@ -60,13 +60,14 @@ class ClosestFaceTree {
     /// One of several points that are asked for together.
     struct Query {
         Vec3 x;               ///< (m)
+        double radius = 0.0;  ///< (m)
         int hint = -1;        ///< see closest()
         LimbSet ignored = 0;  ///< see closest()
     };
     static constexpr int packet = 8;
 
     /// The same for 1 to `packet` points, which is faster where they are near each other.
-    void closest(const Query* queries, int count, double radius, Stack& stack, FaceHit* hits) const;
+    void closest(const Query* queries, int count, Stack& stack, FaceHit* hits) const;
 
     /// First face that the ray from `q` along the unit vector `direction` meets within `length`.
     /// Where it meets an edge, either face or (rarely, by rounding) none may be reported.

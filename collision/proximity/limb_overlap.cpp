@@ -19,6 +19,7 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings,
     : m_settings(settings),
       m_proximity({}, trees),
       m_own_proximity({}, trees),
+      m_other_proximity({}, trees),
       m_searches(searches && searches->settings().radius >= settings.reach ? searches : nullptr) {
     check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
     check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
@@ -151,22 +152,31 @@ void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Poin
     m_covered &= kept;
 }
 
+/// Puts the vertices that have a limb of their own into m_rows.
+void LimbOverlap::select_owners() {
+    m_rows.clear();
+    for (size_t i = 0; i < m_own.size(); ++i)
+        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
+}
+
 /// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
 void LimbOverlap::find_covered(const Boundary& boundary, const Points& x, StepEnd end) {
     m_rows.clear();
     for (size_t i = 0; i < m_own.size(); ++i) {
         m_without[i] = ~m_unjoined[i] | m_ignored[i];
-        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
+        const auto vertex = static_cast<Eigen::Index>(i);
+        if (m_own[i] != 0 && (m_boxes.near(x.row(vertex), m_settings.reach) & ~m_without[i]) != 0)
+            m_rows.push_back(static_cast<int>(i));
     }
-    while (!m_rows.empty()) {
-        m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
+    for (Proximity* searches = &m_other_proximity; !m_rows.empty(); searches = &m_proximity) {
+        searches->query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
         m_next.clear();
         for (const int i : m_rows) {
             const LimbSet limb = limb_of(boundary, i) & ~m_without[static_cast<size_t>(i)];
             if (limb == 0) continue;
             m_without[static_cast<size_t>(i)] |= limb;
             m_next.push_back(i);
-            if (m_proximity.cover(m_near, i, end, joined(limb))) m_covered |= limb;
+            if (searches->cover(m_near, i, end, joined(limb))) m_covered |= limb;
         }
         m_rows.swap(m_next);
     }
@@ -177,20 +187,53 @@ void LimbOverlap::ignore_covered() {
     for (size_t i = 0; i < m_own.size(); ++i) m_ignored[i] |= m_covered & m_unjoined[i];
 }
 
-/// Lets vertices that are inside a joined limb ignore it where it lies over their own limb's skin,
-/// which m_near_own then holds.
-void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
-    m_rows.clear();
-    m_passed.resize(m_own.size());
-    for (size_t i = 0; i < m_own.size(); ++i) {
-        m_without[i] = ~m_own[i];
-        m_passed[i] = m_own[i] | m_unjoined[i];
-        if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
-    }
-    // What is nearest at the end nobody else asks: the step has not been taken yet.
-    Proximity& searches = m_searches && end == StepEnd::start ? *m_searches : m_own_proximity;
+/// Finds the skin of their own limbs that is nearest to the vertices in m_rows.
+void LimbOverlap::find_own_skin(Proximity& searches, const Boundary& boundary, const Points& x,
+                                StepEnd end) {
+    for (const int i : m_rows) m_without[static_cast<size_t>(i)] = ~m_own[static_cast<size_t>(i)];
     searches.query_rows(x, m_rows, boundary, m_near_own, end, {&m_without, m_settings.reach});
-    searches.cover_rows(m_near_own, m_rows, end, m_passed, m_covers);
+}
+
+/// Finds what lies over that skin of limbs that are joined to it; rows where that cannot be are
+/// dropped.
+void LimbOverlap::find_covers(const Boundary& boundary, StepEnd end) {
+    m_passed.resize(m_own.size());
+    for (size_t i = 0; i < m_own.size(); ++i) m_passed[i] = m_own[i] | m_unjoined[i];
+    const bool start = end == StepEnd::start;
+    const Points& points = start ? m_near_own.point0 : m_near_own.point1;
+    const Points& normals = start ? m_near_own.normal0 : m_near_own.normal1;
+    const auto is_clear = [&](int i) {
+        if (!m_near_own.has(i)) return true;
+        const LimbSet above = m_boxes.along(points.row(i), normals.row(i), Cover::farthest);
+        return (above & ~m_passed[static_cast<size_t>(i)]) == 0;
+    };
+    m_rows.erase(std::remove_if(m_rows.begin(), m_rows.end(), is_clear), m_rows.end());
+    m_proximity.cover_rows(boundary, m_near_own, m_rows, end, m_passed, m_covers);
+}
+
+void LimbOverlap::ignore_folded_at_start(const Boundary& boundary, const Points& x) {
+    select_owners();
+    find_own_skin(m_searches ? *m_searches : m_own_proximity, boundary, x, StepEnd::start);
+    find_covers(boundary, StepEnd::start);
+    ignore_folded(boundary, x, StepEnd::start);
+}
+
+/// Skin is not searched for again where it is carried to a place over which nothing lies.
+void LimbOverlap::ignore_folded_at_end(const Boundary& boundary, const Points& x) {
+    select_owners();
+    find_covers(boundary, StepEnd::end);
+    m_next.clear();
+    for (size_t k = 0; k < m_rows.size(); ++k)
+        if (m_covers[k]) m_next.push_back(m_rows[k]);
+    m_rows.swap(m_next);
+    find_own_skin(m_own_proximity, boundary, x, StepEnd::end);
+    find_covers(boundary, StepEnd::end);
+    ignore_folded(boundary, x, StepEnd::end);
+}
+
+/// Lets vertices in m_rows that are inside a joined limb ignore it where it lies over their own
+/// limb's skin.
+void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
     m_next.clear();
     for (size_t k = 0; k < m_rows.size(); ++k) {
         const int i = m_rows[k];
@@ -213,11 +256,13 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     }
     find_own_limbs(boundary, state.x);
     m_x = state.x + dt * state.v;
+    m_boxes.fit(boundary, m_has_limbs, StepEnd::start);
     find_covered(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
     ignore_covered();
-    ignore_folded(boundary, state.x, StepEnd::start);
+    ignore_folded_at_start(boundary, state.x);
     release(boundary, state.x, m_x);
-    ignore_folded(boundary, m_x, StepEnd::end);
+    m_boxes.fit(boundary, m_has_limbs, StepEnd::end);
+    ignore_folded_at_end(boundary, m_x);
     find_covered(boundary, m_x, StepEnd::end);
     ignore_covered();
     if (ignores_nothing()) return boundary;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "collision/proximity/limb_boxes.h"
 #include "collision/proximity/proximity.h"
 #include "data/core/cloth_state.h"
 
@@ -76,6 +77,11 @@ class LimbOverlap {
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_covered();
+    void select_owners();
+    void find_own_skin(Proximity& searches, const Boundary& boundary, const Points& x, StepEnd end);
+    void find_covers(const Boundary& boundary, StepEnd end);
+    void ignore_folded_at_start(const Boundary& boundary, const Points& x);
+    void ignore_folded_at_end(const Boundary& boundary, const Points& x);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
     bool ignores_nothing() const;
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
@@ -85,11 +91,14 @@ class LimbOverlap {
 
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
-    Proximity m_own_proximity;            ///< of own limbs: searches begin at the faces found last
-    Proximity* m_searches;                ///< used instead at the start of a step; or null
+    // Searches begin at the faces found last, so each kind has its own.
+    Proximity m_own_proximity;            ///< of own limbs
+    Proximity m_other_proximity;          ///< of the nearest limb that is not joined to the own one
+    Proximity* m_searches;                ///< used instead of m_own_proximity at the start; or null
     std::vector<char> m_has_limbs;        ///< each obstacle of the last step
     std::vector<Limbs> m_known, m_found;  ///< of the obstacles in the last step
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
+    LimbBoxes m_boxes;                             ///< at the end that is looked at
     LimbSet m_covered = 0;
     std::vector<LimbSet> m_own;       ///< |V|: 0: has not come near any limb yet
     std::vector<LimbSet> m_unjoined;  ///< |V|: limbs not joined to its own; 0: it has no own limb

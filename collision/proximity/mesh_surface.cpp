@@ -66,10 +66,10 @@ SurfaceHit MeshSurface::closest(const Vec3& q, double radius, int hint,
     return with_sign(m_tree.closest(q, radius, hint, stack, ignored), q, ignored);
 }
 
-void MeshSurface::closest(const ClosestFaceTree::Query* queries, int count, double radius,
+void MeshSurface::closest(const ClosestFaceTree::Query* queries, int count,
                           ClosestFaceTree::Stack& stack, SurfaceHit* hits) const {
     FaceHit found[ClosestFaceTree::packet];
-    m_tree.closest(queries, count, radius, stack, found);
+    m_tree.closest(queries, count, stack, found);
     for (int k = 0; k < count; ++k) hits[k] = with_sign(found[k], queries[k].x, queries[k].ignored);
 }
 

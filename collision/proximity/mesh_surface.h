@@ -54,8 +54,8 @@ class MeshSurface {
                        LimbSet ignored = 0) const;
 
     /// The same for 1 to ClosestFaceTree::packet points, faster where they are near each other.
-    void closest(const ClosestFaceTree::Query* queries, int count, double radius,
-                 ClosestFaceTree::Stack& stack, SurfaceHit* hits) const;
+    void closest(const ClosestFaceTree::Query* queries, int count, ClosestFaceTree::Stack& stack,
+                 SurfaceHit* hits) const;
 
     /// The part of the mesh that lies over a point of a face, along its normal; nothing, if what
     /// the ray along the normal meets first (within `length`) is seen from outside.

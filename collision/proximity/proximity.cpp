@@ -33,6 +33,7 @@ constexpr double mesh_work = 32;
 /// What a query point was told last.
 struct Answer {
     SurfaceHit hit;
+    int hint = -1;          ///< the face that was nearest when there was one
     Vec3 x = Vec3::Zero();  ///< the point (m)
     double radius = -1.0;   ///< of the search (m); negative: the surface has moved since
     LimbSet ignored = 0;
@@ -109,31 +110,33 @@ Answers& answers_for(SearchedMesh& mesh, size_t count) {
 /// nearest last are where the search begins. find_nearest() then reads the answers.
 class SearchTogether {
  public:
-    SearchTogether(const Target& target, double radius, ClosestFaceTree::Stack& stack)
-        : m_target(target), m_radius(radius), m_stack(stack) {}
+    SearchTogether(const Target& target, ClosestFaceTree::Stack& stack)
+        : m_target(target), m_stack(stack) {}
 
-    void add(const Vec3& x, size_t point, LimbSet ignored) {
+    void add(const Vec3& x, size_t point, double radius, LimbSet ignored) {
         const Answer& answer = m_target.answers->of[point];
         if (!x.allFinite() || (m_target.obstacle->solid & ignored) != 0 ||
-            answer.is_to(x, m_radius, ignored))
+            answer.is_to(x, radius, ignored))
             return;
         m_points[m_count] = point;
-        m_queries[m_count++] = {x, answer.hit.face, ignored};
+        m_queries[m_count++] = {x, radius, answer.hint, ignored};
     }
 
     void search() {
         if (m_count == 0) return;
         SurfaceHit hits[ClosestFaceTree::packet];
-        m_target.surface->closest(m_queries, m_count, m_radius, m_stack, hits);
-        for (int k = 0; k < m_count; ++k)
-            m_target.answers->of[m_points[k]] = {hits[k], m_queries[k].x, m_radius,
-                                                 m_queries[k].ignored};
+        m_target.surface->closest(m_queries, m_count, m_stack, hits);
+        for (int k = 0; k < m_count; ++k) {
+            const ClosestFaceTree::Query& query = m_queries[k];
+            const int hint = hits[k].face >= 0 ? hits[k].face : query.hint;
+            m_target.answers->of[m_points[k]] = {hits[k], hint, query.x, query.radius,
+                                                 query.ignored};
+        }
         m_count = 0;
     }
 
  private:
     const Target& m_target;
-    const double m_radius;
     ClosestFaceTree::Stack& m_stack;
     int m_count = 0;
     size_t m_points[ClosestFaceTree::packet];
@@ -197,6 +200,7 @@ void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
     if (nearest.target->surface) {
         const Points* ends[2] = {&obstacle.x0, &obstacle.x1};
         const int chosen = chosen_at == StepEnd::start ? 0 : 1, carried = 1 - chosen;
+        ends[chosen] = &nearest.target->surface->vertices();  // the same, read by the search
         for (const int end : {chosen, carried}) {
             if (end == carried) normal[carried] = normal[chosen];
             place_on_face(*ends[end], *obstacle.faces, nearest.on_mesh, point[end], normal[end]);
@@ -351,27 +355,31 @@ struct Proximity::Impl {
 
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored, ClosestFaceTree::Stack& stack) const {
-        constexpr double length = 0.5;  // m: thicker than any limb
         if (!contacts.has(i)) return std::nullopt;
         const Points& points = chosen_at == StepEnd::start ? contacts.point0 : contacts.point1;
         for (const Target& target : targets)
             if (target.index == contacts.obstacle[size_t(i)] && target.surface)
-                return target.surface->cover(points.row(i), contacts.face[size_t(i)], length, stack,
-                                             ignored);
+                return target.surface->cover(points.row(i), contacts.face[size_t(i)],
+                                             Cover::farthest, stack, ignored);
         return std::nullopt;
     }
 
     /// Calls store(i, nearest) for the given rows of x; null: for all of them.
-    /// @param ignored  limbs that each row passes over; what has other rows than x is passed over
+    /// @param limits  QueryLimits::ignored that has other rows than x is passed over
     template <class Store>
-    void for_each_nearest(const Points& x, const std::vector<int>* rows,
-                          const std::vector<LimbSet>& ignored, double radius, const Store& store) {
-        radius = std::min(radius, settings.radius);
+    void for_each_nearest(const Points& x, const std::vector<int>* rows, const Boundary& boundary,
+                          const QueryLimits& limits, const Store& store) {
+        const std::vector<LimbSet>& ignored =
+            limits.ignored ? *limits.ignored : boundary.ignored_limbs;
+        const double largest = std::min(limits.radius, settings.radius);
         const std::vector<int>& order = rows_in_order(x, rows);
         const int count = static_cast<int>(order.size());
         const int threads = threads_for(count);
         const auto passed_over = [&](int i) {
             return ignored.size() == size_t(x.rows()) ? ignored[size_t(i)] : 0;
+        };
+        const auto radius = [&](int i) {
+            return limits.radii ? std::min((*limits.radii)[i], largest) : largest;
         };
         constexpr int packet = ClosestFaceTree::packet;
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 16) if (threads > 1)
@@ -380,16 +388,16 @@ struct Proximity::Impl {
             const int last = std::min(first + packet, count);
             for (const Target& target : targets) {
                 if (!target.surface) continue;
-                SearchTogether together(target, radius, stack);
+                SearchTogether together(target, stack);
                 for (int at = first; at < last; ++at) {
                     const int i = order[size_t(at)];
-                    together.add(x.row(i), size_t(i), passed_over(i));
+                    together.add(x.row(i), size_t(i), radius(i), passed_over(i));
                 }
                 together.search();
             }
             for (int at = first; at < last; ++at) {
                 const int i = order[size_t(at)];
-                store(i, find_nearest(targets, x.row(i), size_t(i), radius, passed_over(i)));
+                store(i, find_nearest(targets, x.row(i), size_t(i), radius(i), passed_over(i)));
             }
         }
     }
@@ -417,18 +425,19 @@ void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts
                       StepEnd chosen_at, const QueryLimits& limits) {
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
-    m_impl->for_each_nearest(
-        x, nullptr, limits.ignored ? *limits.ignored : boundary.ignored_limbs, limits.radius,
-        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+    m_impl->for_each_nearest(x, nullptr, boundary, limits, [&](int i, const Nearest& nearest) {
+        store_row(nearest, chosen_at, i, contacts);
+    });
 }
 
 void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const Boundary& boundary,
                            SurfaceContacts& contacts, StepEnd chosen_at,
                            const QueryLimits& limits) {
+    if (rows.empty()) return;
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
-    m_impl->for_each_nearest(
-        x, &rows, limits.ignored ? *limits.ignored : boundary.ignored_limbs, limits.radius,
-        [&](int i, const Nearest& nearest) { store_row(nearest, chosen_at, i, contacts); });
+    m_impl->for_each_nearest(x, &rows, boundary, limits, [&](int i, const Nearest& nearest) {
+        store_row(nearest, chosen_at, i, contacts);
+    });
 }
 
 std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::Index i,
@@ -436,16 +445,18 @@ std::optional<Cover> Proximity::cover(const SurfaceContacts& contacts, Eigen::In
     return m_impl->cover(contacts, i, chosen_at, ignored, m_impl->stacks[0]);
 }
 
-void Proximity::cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
-                           StepEnd chosen_at, const std::vector<LimbSet>& ignored,
+void Proximity::cover_rows(const Boundary& boundary, const SurfaceContacts& contacts,
+                           const std::vector<int>& rows, StepEnd end,
+                           const std::vector<LimbSet>& ignored,
                            std::vector<std::optional<Cover>>& covers) {
+    m_impl->prepare(boundary, end, contacts.obstacle.size());
     const int count = static_cast<int>(rows.size());
     covers.resize(rows.size());
     const int threads = m_impl->threads_for(count);
 #pragma omp parallel for num_threads(threads) schedule(dynamic, 64) if (threads > 1)
     for (int k = 0; k < count; ++k) {
         const int i = rows[size_t(k)];
-        covers[size_t(k)] = m_impl->cover(contacts, i, chosen_at, ignored[size_t(i)],
+        covers[size_t(k)] = m_impl->cover(contacts, i, end, ignored[size_t(i)],
                                           m_impl->stacks[size_t(omp_get_thread_num())]);
     }
 }
@@ -454,9 +465,9 @@ void Proximity::signed_distance(const Points& x, const Boundary& boundary, StepE
                                 VectorX& distance) {
     distance.resize(x.rows());
     m_impl->prepare(boundary, end, size_t(x.rows()));
-    m_impl->for_each_nearest(
-        x, nullptr, boundary.ignored_limbs, m_impl->settings.radius,
-        [&](int i, const Nearest& nearest) { distance[i] = nearest.distance; });
+    m_impl->for_each_nearest(x, nullptr, boundary, {}, [&](int i, const Nearest& nearest) {
+        distance[i] = nearest.distance;
+    });
 }
 
 static void check_mesh(const std::string& name, const Obstacle& mesh) {

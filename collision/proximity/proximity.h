@@ -54,12 +54,14 @@ struct QueryLimits {
                                                     ///< Boundary::ignored_limbs, if it fits
     double radius = std::numeric_limits<double>::infinity();  ///< look no farther than this (m),
                                                               ///< nor than ProximitySettings
+    const VectorX* radii = nullptr;  ///< the same for each row (m); null: one for all
 };
 
 /// What lies over a surface point of a mesh, see Proximity::cover().
 struct Cover {
-    double depth = 0.0;  ///< how much of it (m, along the normal), above 0
-    int face = 0;        ///< its face on the far side
+    static constexpr double farthest = 0.5;  ///< that is looked at (m): thicker than any limb
+    double depth = 0.0;                      ///< how much of it (m, along the normal), above 0
+    int face = 0;                            ///< its face on the far side
 };
 
 /// Nearest-point queries against the obstacles of a Boundary, on FCL's bounding volume hierarchies.
@@ -107,17 +109,19 @@ class Proximity {
     /// Boundary::ignored_limbs is used if it has as many rows.
     void signed_distance(const Points& x, const Boundary& boundary, StepEnd end, VectorX& distance);
 
-    /// The part of its own mesh that lies over row i's surface point, up to half a metre. To be
+    /// The part of its own mesh that lies over row i's surface point, up to Cover::farthest. To be
     /// asked right after the query, for the same end.
     /// @param ignored  limbs that do not count
     std::optional<Cover> cover(const SurfaceContacts& contacts, Eigen::Index i, StepEnd chosen_at,
                                LimbSet ignored = 0);
 
-    /// The same for several rows, on several threads.
-    /// @param ignored  |V|: limbs that do not count for each row
-    /// @param covers   |rows|: what lies over each of `rows`
-    void cover_rows(const SurfaceContacts& contacts, const std::vector<int>& rows,
-                    StepEnd chosen_at, const std::vector<LimbSet>& ignored,
+    /// The same for several rows, on several threads, at either end and whatever was asked before.
+    /// @param contacts  of a query of the same boundary
+    /// @param end       where the surface points are looked at, wherever they were chosen
+    /// @param ignored   |V|: limbs that do not count for each row
+    /// @param covers    |rows|: what lies over each of `rows`
+    void cover_rows(const Boundary& boundary, const SurfaceContacts& contacts,
+                    const std::vector<int>& rows, StepEnd end, const std::vector<LimbSet>& ignored,
                     std::vector<std::optional<Cover>>& covers);
 
     /// Meshes that are remembered at present.

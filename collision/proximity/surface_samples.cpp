@@ -9,7 +9,10 @@
 namespace cloth {
 
 constexpr double near_enough = 2e-2;  // m: skins further away do not matter
-constexpr int enough_samples = 4000;  // to be worth waking threads for
+// A sample that is deep is no farther from the surface than its bound says. It is searched for
+// somewhat farther: what is known of a face's centre saves the search for its edges' midpoints.
+constexpr double beyond_doubt = 5e-3;  // m
+constexpr int enough_samples = 4000;   // to be worth waking threads for
 
 static std::vector<std::array<int, 2>> faces_at_edges(const Garment& garment) {
     std::map<std::pair<int, int>, int> index;
@@ -33,6 +36,7 @@ SurfaceSamples::SurfaceSamples(const Garment& garment)
       m_edge_faces(faces_at_edges(garment)) {
     const Eigen::Index count = m_faces.rows() + static_cast<Eigen::Index>(m_edges.size());
     m_x.setZero(count, 3);
+    m_radii.setZero(count);
     m_distance.setZero(count);  // what is not movable is never deep
     m_parted.resize(static_cast<size_t>(count));
     m_unsure.resize(static_cast<size_t>(count));
@@ -134,7 +138,11 @@ void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundar
         LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
         for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
     }
-    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, {&m_ignored});
+    QueryLimits limits;
+    limits.ignored = &m_ignored;
+    limits.radii = &m_radii;
+    for (const int sample : m_rows) m_radii[sample] = beyond_doubt - m_distance[sample];
+    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
     for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
 }
 

@@ -70,6 +70,7 @@ class SurfaceSamples {
     Faces m_faces;
     std::vector<std::array<int, 2>> m_edges, m_edge_faces;  ///< the faces at an edge, -1: none
     Points m_x;                                             ///< |samples| x 3 (m)
+    VectorX m_radii;             ///< |samples| (m): how far a sample is searched for
     VectorX m_distance;          ///< |samples| (m): a lower bound, exact where searched
     SurfaceContacts m_contacts;  ///< |samples|
     std::vector<int> m_rows, m_deep;

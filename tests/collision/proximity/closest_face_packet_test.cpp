@@ -13,14 +13,14 @@ using Query = ClosestFaceTree::Query;
 constexpr double not_finite = std::numeric_limits<double>::infinity();
 
 /// Asks for the points together and one by one.
-void expect_same_as_single(const ClosestFaceTree& tree, const std::vector<Query>& queries,
-                           double radius) {
+void expect_same_as_single(const ClosestFaceTree& tree, const std::vector<Query>& queries) {
     ClosestFaceTree::Stack stack;
     std::vector<FaceHit> hits(queries.size());
-    tree.closest(queries.data(), static_cast<int>(queries.size()), radius, stack, hits.data());
+    tree.closest(queries.data(), static_cast<int>(queries.size()), stack, hits.data());
     for (size_t k = 0; k < queries.size(); ++k) {
         const Query& query = queries[k];
-        const FaceHit single = tree.closest(query.x, radius, query.hint, stack, query.ignored);
+        const FaceHit single =
+            tree.closest(query.x, query.radius, query.hint, stack, query.ignored);
         EXPECT_EQ(hits[k].face, single.face) << "point " << k << " of " << queries.size();
         EXPECT_EQ(hits[k].barycentric, single.barycentric);
         EXPECT_EQ(hits[k].squared, single.squared);
@@ -28,7 +28,8 @@ void expect_same_as_single(const ClosestFaceTree& tree, const std::vector<Query>
 }
 
 /// Up to eight points near each other, or as far apart as the mesh is wide, some on its vertices.
-std::vector<Query> random_queries(std::mt19937& random, const TriMesh& mesh) {
+/// Each looks as far as the radius, or less far.
+std::vector<Query> random_queries(std::mt19937& random, const TriMesh& mesh, double radius) {
     const double spread = std::pow(10.0, uniform(random, -3.0, 0.3));
     const Vec3 middle = random_point(random, 1.2);
     std::vector<Query> queries(1 + random() % ClosestFaceTree::packet);
@@ -38,6 +39,7 @@ std::vector<Query> random_queries(std::mt19937& random, const TriMesh& mesh) {
             query.x = mesh.vertices.row(Eigen::Index(random() % size_t(mesh.vertices.rows())));
         if (random() % 2 == 0) query.hint = int(random() % size_t(mesh.faces.rows()));
         if (random() % 4 == 0) query.ignored = random() % 8;
+        query.radius = random() % 4 == 0 ? uniform(random, 0.0, radius) : radius;
     }
     return queries;
 }
@@ -69,8 +71,9 @@ TEST(ClosestFacePacket, PointsThatAreSearchedTogetherAnswerAsIfAlone) {
         const auto limbs = random_limbs(random, mesh);
         const ClosestFaceTree tree(mesh.vertices, mesh.faces, 3.0, &limbs);
         for (int trial = 0; trial < 400; ++trial)
-            expect_same_as_single(tree, random_queries(random, mesh),
-                                  trial % 2 == 0 ? 3.0 : uniform(random, 0.01, 0.5));
+            expect_same_as_single(
+                tree,
+                random_queries(random, mesh, trial % 2 == 0 ? 3.0 : uniform(random, 0.01, 0.5)));
     }
 }
 
@@ -80,10 +83,10 @@ TEST(ClosestFacePacket, LargeMeshesFarFromTheOriginAnswerAsPointsAlone) {
     const TriMesh ground = scaled(roughened(icosphere(2), 0.1, 4), 100.0, offset);
     const ClosestFaceTree tree(ground.vertices, ground.faces, 200.0);
     for (int trial = 0; trial < 400; ++trial) {
-        auto queries = random_queries(random, ground);
+        auto queries = random_queries(random, ground, 200.0);
         for (Query& query : queries)
             if (query.x.norm() < 10.0) query.x = 100.0 * query.x + offset;
-        expect_same_as_single(tree, queries, 200.0);
+        expect_same_as_single(tree, queries);
     }
 }
 
@@ -96,10 +99,10 @@ TEST(ClosestFacePacket, FacesThatAreNotFiniteAndEmptyMeshesAreNoCandidates) {
     const Faces none(0, 3);
     const ClosestFaceTree empty(mesh.vertices, none, 3.0);
     for (int trial = 0; trial < 200; ++trial) {
-        auto queries = random_queries(random, icosphere(2));
-        expect_same_as_single(tree, queries, 3.0);
+        auto queries = random_queries(random, icosphere(2), 3.0);
+        expect_same_as_single(tree, queries);
         for (Query& query : queries) query.hint = -1;
-        expect_same_as_single(empty, queries, 3.0);
+        expect_same_as_single(empty, queries);
     }
 }
 

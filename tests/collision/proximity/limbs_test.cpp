@@ -107,18 +107,26 @@ TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
     SurfaceContacts all, near;
     proximity.query(x, boundary, all);
     near = all;
-    proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 0.05});
-    int kept = 0, left_out = 0;
-    for (const int i : rows) {
-        const bool is_sphere = all.has(i) && all.obstacle[size_t(i)] == 1;
-        const double distance = is_sphere ? all.distance[i] : std::abs(all.distance[i]);
-        ASSERT_EQ(near.has(i), distance <= 0.05) << i;
-        ++(near.has(i) ? kept : left_out);
-        if (near.has(i)) {
-            EXPECT_EQ(near.distance[i], all.distance[i]);
+    VectorX radii(2000);
+    for (const int i : rows) radii[i] = uniform(random, 0.0, 0.1);
+    for (const bool each : {false, true}) {
+        const QueryLimits limits{nullptr, 0.05, each ? &radii : nullptr};
+        proximity.query_rows(x, rows, boundary, near, StepEnd::start, limits);
+        int kept = 0, left_out = 0;
+        for (const int i : rows) {
+            const bool is_sphere = all.has(i) && all.obstacle[size_t(i)] == 1;
+            const double distance = is_sphere ? all.distance[i] : std::abs(all.distance[i]);
+            const double radius = each ? std::min(radii[i], 0.05) : 0.05;
+            ASSERT_EQ(near.has(i), distance <= radius) << i;
+            ++(near.has(i) ? kept : left_out);
+            if (near.has(i)) {
+                EXPECT_EQ(near.distance[i], all.distance[i]);
+            } else {
+                EXPECT_LE(near.clearance[i], radius);
+            }
         }
+        EXPECT_GT(std::min(kept, left_out), 50);
     }
-    EXPECT_GT(std::min(kept, left_out), 50);
     proximity.query_rows(x, rows, boundary, near, StepEnd::start, {nullptr, 1.0});
     EXPECT_EQ(near.distance, all.distance) << "not beyond the settings' radius";
 }
@@ -139,11 +147,14 @@ TEST(Limbs, WhatWasAskedBeforeChangesNoAnswer) {
         for (int round = 0; round < 8; ++round) {
             for (LimbSet& limbs : ignored) limbs = round % 3 == 2 ? 0 : limbs | 1u << random() % 5;
             const double radius = round % 2 == 0 ? 0.6 : 0.3;
+            VectorX radii(500);
+            for (const int i : rows) radii[i] = uniform(random, 0.0, round % 4 == 0 ? 1.0 : 0.3);
+            const QueryLimits limits{&ignored, radius, round % 4 < 2 ? &radii : nullptr};
             contacts = all;
-            asked.query_rows(x, rows, boundary, contacts, StepEnd::start, {&ignored, radius});
+            asked.query_rows(x, rows, boundary, contacts, StepEnd::start, limits);
             Proximity fresh({0.6, 0});
             SurfaceContacts expected = all;
-            fresh.query_rows(x, rows, boundary, expected, StepEnd::start, {&ignored, radius});
+            fresh.query_rows(x, rows, boundary, expected, StepEnd::start, limits);
             EXPECT_EQ(contacts.face, expected.face) << "round " << round;
             EXPECT_EQ(contacts.distance, expected.distance) << "round " << round;
             EXPECT_EQ(contacts.barycentric, expected.barycentric) << "round " << round;
@@ -210,7 +221,7 @@ TEST(Limbs, WhatCoversSeveralRowsIsWhatCoversEachForAnyNumberOfThreads) {
         SurfaceContacts contacts;
         proximity.query(balls.x, balls.boundary, contacts);
         std::vector<std::optional<Cover>> covers;
-        proximity.cover_rows(contacts, rows, StepEnd::start, ignored, covers);
+        proximity.cover_rows(balls.boundary, contacts, rows, StepEnd::start, ignored, covers);
         ASSERT_EQ(covers.size(), rows.size());
         int found = 0;
         for (size_t k = 0; k < rows.size(); ++k) {
@@ -224,6 +235,37 @@ TEST(Limbs, WhatCoversSeveralRowsIsWhatCoversEachForAnyNumberOfThreads) {
         }
         EXPECT_GT(found, 10);
     }
+}
+
+TEST(Limbs, CoverCanBeLookedAtWhereThePointsAreCarriedTo) {
+    const TwoBalls balls;
+    Boundary moving = balls.boundary;
+    Obstacle& body = moving.obstacles[0];
+    for (Eigen::Index i = body.x1.rows() / 2; i < body.x1.rows(); ++i)
+        body.x1.row(i) += Eigen::RowVector3d(0.05, -0.1, 0.02);
+    Boundary there = moving;
+    there.obstacles[0].x0 = body.x1;
+    std::vector<int> rows(size_t(balls.x.rows()));
+    std::iota(rows.begin(), rows.end(), 0);
+    const std::vector<LimbSet> ignored(rows.size(), 0);
+    Proximity proximity, other;
+    SurfaceContacts contacts, carried;
+    proximity.query(balls.x, moving, contacts);
+    carried = contacts;
+    carried.point0 = contacts.point1;
+    std::vector<std::optional<Cover>> before, after, expected;
+    proximity.cover_rows(moving, contacts, rows, StepEnd::start, ignored, before);
+    proximity.cover_rows(moving, contacts, rows, StepEnd::end, ignored, after);
+    other.cover_rows(there, carried, rows, StepEnd::start, ignored, expected);
+    int changed = 0;
+    for (size_t k = 0; k < rows.size(); ++k) {
+        ASSERT_EQ(after[k].has_value(), expected[k].has_value()) << "point " << k;
+        changed += before[k].has_value() != after[k].has_value();
+        if (after[k]) {
+            EXPECT_EQ(after[k]->depth, expected[k]->depth);
+        }
+    }
+    EXPECT_GT(changed, 3);
 }
 
 TEST(Limbs, CoverIsWhatLiesOverAPoint) {

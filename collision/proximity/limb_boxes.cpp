@@ -1,0 +1,110 @@
+#include "collision/proximity/limb_boxes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cloth {
+namespace {
+
+constexpr size_t most_meshes = 16;
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// At least as far out as the number that it was rounded from.
+float rounded_down(double x) {
+    return std::nextafter(static_cast<float>(x), -infinity);
+}
+
+float rounded_up(double x) {
+    return std::nextafter(static_cast<float>(x), infinity);
+}
+
+}  // namespace
+
+const LimbBoxes::Mesh& LimbBoxes::known(const Obstacle& obstacle) {
+    for (const Mesh& mesh : m_meshes)
+        if (mesh.faces == obstacle.faces && mesh.limbs == obstacle.limbs) return mesh;
+    if (m_meshes.size() == most_meshes) m_meshes.clear();
+    Mesh& mesh = m_meshes.emplace_back();
+    mesh.faces = obstacle.faces;
+    mesh.limbs = obstacle.limbs;
+    for (Eigen::Index f = 0; f < mesh.faces->rows(); ++f)
+        for (int corner = 0; corner < 3; ++corner)
+            mesh.vertices[(*mesh.limbs)[static_cast<size_t>(f)]].push_back(
+                (*mesh.faces)(f, corner));
+    for (std::vector<int>& of : mesh.vertices) {
+        std::sort(of.begin(), of.end());
+        of.erase(std::unique(of.begin(), of.end()), of.end());
+    }
+    return mesh;
+}
+
+void LimbBoxes::fit(const Boundary& boundary, const std::vector<char>& has_limbs, StepEnd end) {
+    for (Row& row : m_low) row.fill(infinity);
+    for (Row& row : m_high) row.fill(-infinity);
+    for (size_t k = 0; k < boundary.obstacles.size(); ++k) {
+        if (!has_limbs[k]) continue;
+        const Obstacle& obstacle = boundary.obstacles[k];
+        const Mesh& mesh = known(obstacle);
+        for (size_t limb = 0; limb < max_limbs; ++limb)
+            fit(mesh.vertices[limb], end == StepEnd::start ? obstacle.x0 : obstacle.x1, limb);
+    }
+}
+
+void LimbBoxes::fit(const std::vector<int>& vertices, const Points& x, size_t limb) {
+    // no query answers for a mesh whose faces are out of range
+    if (vertices.empty() || vertices.front() < 0 || vertices.back() >= x.rows()) return;
+    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    for (const int i : vertices)
+        for (int k = 0; k < 3; ++k) {
+            const double at = x(i, k);
+            if (at < low[k]) low[k] = at;
+            if (at > high[k]) high[k] = at;
+        }
+    for (size_t k = 0; k < 3; ++k) {
+        const auto axis = static_cast<Eigen::Index>(k);
+        m_low[k][limb] = std::min(m_low[k][limb], rounded_down(low[axis]));
+        m_high[k][limb] = std::max(m_high[k][limb], rounded_up(high[axis]));
+    }
+}
+
+LimbSet LimbBoxes::near(const Vec3& x, double reach) const {
+    float low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+        low[k] = rounded_down(x[k] - reach);
+        high[k] = rounded_up(x[k] + reach);
+    }
+    LimbSet found = 0;
+    for (size_t limb = 0; limb < max_limbs; ++limb) {  // no branches: eight at a time
+        const bool overlap = (m_low[0][limb] <= high[0]) & (m_high[0][limb] >= low[0]) &
+                             (m_low[1][limb] <= high[1]) & (m_high[1][limb] >= low[1]) &
+                             (m_low[2][limb] <= high[2]) & (m_high[2][limb] >= low[2]);
+        found |= LimbSet(overlap) << limb;
+    }
+    return found;
+}
+
+LimbSet LimbBoxes::along(const Vec3& x, const Vec3& direction, double length) const {
+    constexpr float around = 1e-4f;  // m: more than the rounding
+    float from[3], inverse[3];
+    for (int k = 0; k < 3; ++k) {
+        const double d = direction[k];
+        from[k] = static_cast<float>(x[k]);
+        inverse[k] = static_cast<float>(1.0 / (std::abs(d) < 1e-6 ? std::copysign(1e-6, d) : d));
+    }
+    LimbSet found = 0;
+    for (size_t limb = 0; limb < max_limbs; ++limb) {  // no branches: eight at a time
+        float enter = 0.0f, leave = static_cast<float>(length);
+        for (size_t k = 0; k < 3; ++k) {
+            const float low = (m_low[k][limb] - around - from[k]) * inverse[k];
+            const float high = (m_high[k][limb] + around - from[k]) * inverse[k];
+            enter = std::max(enter, std::min(low, high));
+            leave = std::min(leave, std::max(low, high));
+        }
+        const bool meets = (enter <= leave) & (m_low[0][limb] <= m_high[0][limb]);
+        found |= LimbSet(meets) << limb;
+    }
+    return found;
+}
+
+}  // namespace cloth
