@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cloth {
 namespace {
@@ -16,18 +17,7 @@ constexpr double depth_per_step = 1e-4;     // m
 
 void ContactHessian::begin_step(const IncrementalPotential& potential,
                                 const std::vector<int>& row_of) {
-    m_contacts.clear();
-    m_sliders.clear();
-    m_slider_index.clear();
-    const SurfaceContacts& near = potential.contacts();
-    for (size_t i = 0; i < near.obstacle.size(); ++i) {
-        const Eigen::Index vertex = static_cast<Eigen::Index>(i);
-        if (near.obstacle[i] < 0 || row_of[i] < 0) continue;
-        const Vec3 normal = near.normal1.row(vertex);
-        const double height = near.point1.row(vertex).dot(normal);
-        m_contacts.push_back(
-            {vertex, row_of[i], normal, potential.settings().contact_distance + height});
-    }
+    begin_vertices(potential, row_of);
     m_ridges.clear();
     for (const RidgeEnergy::Plane& plane : potential.ridges().planes()) {
         Ridge ridge{plane.vertex, {}, plane.weight, plane.normal, plane.offset};
@@ -38,16 +28,43 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
         }
         m_ridges.push_back(ridge);
     }
-    const auto& sliders = potential.friction().sliders();
-    for (size_t k = 0; k < sliders.size(); ++k) {
-        const int row = row_of[static_cast<size_t>(sliders[k].vertex)];
-        if (row < 0) continue;
-        m_sliders.push_back({row, sliders[k].normal});
-        m_slider_index.push_back(k);
-    }
     begin_self_contact(potential.self_contact(), row_of);
     begin_layer_friction(potential.layer_friction(), row_of);
     m_goals.begin_step(potential.goals(), row_of);
+}
+
+void ContactHessian::begin_vertices(const IncrementalPotential& potential,
+                                    const std::vector<int>& row_of) {
+    m_blocks.clear();
+    m_contacts.clear();
+    m_sliders.clear();
+    m_slider_index.clear();
+    m_vertex_of.resize(row_of.size());
+    size_t rows = 0;
+    for (size_t i = 0; i < row_of.size(); ++i) {
+        if (row_of[i] < 0) continue;
+        m_vertex_of[static_cast<size_t>(row_of[i])] = static_cast<int>(i);
+        ++rows;
+    }
+    const auto& sliders = potential.friction().sliders();
+    m_slider_of.assign(rows, -1);
+    for (size_t k = 0; k < sliders.size(); ++k)
+        if (const int row = row_of[static_cast<size_t>(sliders[k].vertex)]; row >= 0)
+            m_slider_of[static_cast<size_t>(row)] = static_cast<int>(k);
+
+    const SurfaceContacts& near = potential.contacts();
+    const double distance = potential.settings().contact_distance;
+    for (size_t k = 0; k < rows; ++k) {
+        const int row = static_cast<int>(k), vertex = m_vertex_of[k];
+        if (!near.obstacle.empty() && near.has(vertex)) {
+            const Vec3 normal = near.normal1.row(vertex);
+            m_contacts.push_back(
+                {vertex, row, normal, distance + near.point1.row(vertex).dot(normal)});
+        }
+        if (m_slider_of[k] < 0) continue;
+        m_slider_index.push_back(static_cast<size_t>(m_slider_of[k]));
+        m_sliders.push_back({row, sliders[m_slider_index.back()].normal});
+    }
 }
 
 void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
@@ -88,6 +105,7 @@ double ContactHessian::SelfContact::along(const Points& direction) const {
 
 void ContactHessian::linearise(const IncrementalPotential& potential, const Points& x) {
     m_weight = potential.settings().contact_weight;
+    m_blocks.clear();
     for (Contact& contact : m_contacts) {
         contact.depth = contact.surface - x.row(contact.vertex).dot(contact.normal);
         contact.stiffness = 6.0 * m_weight * std::max(contact.depth, 0.0);
@@ -147,10 +165,50 @@ bool ContactHessian::anticipate(const Points& step) {
         const double after = contact.depth - contact.along(step);
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
     }
-    gather_springs();
-    any = any || !m_springs.empty();
     if (m_goals.active()) m_goals.anticipate(step);
-    return any || !m_goals.blocks().empty();
+    gather_blocks();
+    gather_springs();
+    return any || !m_springs.empty() || !m_goals.blocks().empty();
+}
+
+void ContactHessian::Block::add(const Vec3& n, double along, double across) {
+    const Vec3 scaled = (along - across) * n;
+    xx += scaled[0] * n[0] + across;
+    xy += scaled[0] * n[1];
+    xz += scaled[0] * n[2];
+    yy += scaled[1] * n[1] + across;
+    yz += scaled[1] * n[2];
+    zz += scaled[2] * n[2] + across;
+}
+
+void ContactHessian::Block::add(const Eigen::Matrix3d& symmetric) {
+    xx += symmetric(0, 0);
+    xy += symmetric(0, 1);
+    xz += symmetric(0, 2);
+    yy += symmetric(1, 1);
+    yz += symmetric(1, 2);
+    zz += symmetric(2, 2);
+}
+
+void ContactHessian::gather_blocks() {
+    m_blocks.clear();
+    const auto at = [&](int row) -> Block& {
+        if (m_blocks.empty() || m_blocks.back().row != row) m_blocks.emplace_back(row);
+        return m_blocks.back();
+    };
+    auto slider = m_sliders.begin();
+    const auto add_sliders = [&](int end) {
+        for (; slider != m_sliders.end() && slider->row < end; ++slider)
+            at(slider->row).add(slider->normal, 0.0, slider->stiffness);
+    };
+    for (const Contact& contact : m_contacts) {
+        if (!(contact.stiffness > 0.0)) continue;
+        add_sliders(contact.row);
+        at(contact.row).add(contact.normal, contact.stiffness, 0.0);
+        add_sliders(contact.row + 1);
+    }
+    add_sliders(std::numeric_limits<int>::max());
+    for (const GoalHessian::Block& goal : m_goals.blocks()) at(goal.row).add(goal.stiffness);
 }
 
 /// Of the point of a ridge, along its normal (m).
@@ -163,20 +221,16 @@ double ContactHessian::rise(const Ridge& ridge, const Points& step) {
 
 template <class Visit>
 void ContactHessian::for_each_force(const Points& direction, const Visit& visit) const {
-    for (const Contact& contact : m_contacts) {
-        if (contact.stiffness == 0.0) continue;
-        const double along = direction.row(contact.row).dot(contact.normal);
-        visit(contact.row, (contact.stiffness * along) * contact.normal);
+    for (const Block& block : m_blocks) {
+        const double* const d = direction.data() + 3 * static_cast<Eigen::Index>(block.row);
+        visit(block.row, Vec3(block.xx * d[0] + block.xy * d[1] + block.xz * d[2],
+                              block.xy * d[0] + block.yy * d[1] + block.yz * d[2],
+                              block.xz * d[0] + block.yz * d[1] + block.zz * d[2]));
     }
     for (const Ridge& ridge : m_ridges) {
         if (ridge.stiffness == 0.0) continue;
         const Vec3 force = ridge.stiffness * rise(ridge, direction) * ridge.normal;
         for (size_t k = 0; k < 3; ++k) visit(ridge.row[k], ridge.weight[k] * force);
-    }
-    for (const Slider& slider : m_sliders) {
-        const Vec3 motion = direction.row(slider.row);
-        const Vec3 tangential = motion - slider.normal.dot(motion) * slider.normal;
-        visit(slider.row, slider.stiffness * tangential);
     }
     for (const LayerSlider& slider : m_layer_sliders) {
         Vec3 motion = Vec3::Zero();
@@ -185,8 +239,6 @@ void ContactHessian::for_each_force(const Points& direction, const Visit& visit)
         const Vec3 force = slider.stiffness * (motion - slider.normal.dot(motion) * slider.normal);
         for (size_t k = 0; k < 4; ++k) visit(slider.row[k], slider.weight[k] * force);
     }
-    for (const GoalHessian::Block& block : m_goals.blocks())
-        visit(block.row, block.stiffness * direction.row(block.row).transpose());
 }
 
 void ContactHessian::gather_springs() {
@@ -261,8 +313,16 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
             if (weight[k] != 0.0) f += weight[k] * fields.at(row[k]);
         return f;
     };
-    for (const Contact& contact : m_contacts)
-        if (contact.stiffness > 0.0) add(fields.at(contact.row), contact.normal, contact.stiffness);
+    for (const Block& block : m_blocks) {
+        const Row f = fields.at(block.row);
+        const AffineFields::Weights weights = f * f.transpose();
+        sums[0][0] += block.xx * weights;
+        sums[0][1] += block.xy * weights;
+        sums[0][2] += block.xz * weights;
+        sums[1][1] += block.yy * weights;
+        sums[1][2] += block.yz * weights;
+        sums[2][2] += block.zz * weights;
+    }
     for (const Ridge& ridge : m_ridges)
         if (ridge.stiffness > 0.0)
             add(combined(ridge.row, ridge.weight), ridge.normal, ridge.stiffness);
@@ -275,16 +335,8 @@ void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& sy
         sliding.noalias() += stiffness * f * f.transpose();
         add(f, normal, -stiffness);
     };
-    for (const Slider& slider : m_sliders)
-        slide(fields.at(slider.row), slider.normal, slider.stiffness);
     for (const LayerSlider& slider : m_layer_sliders)
         slide(combined(slider.row, slider.weight), slider.normal, slider.stiffness);
-    for (const GoalHessian::Block& block : m_goals.blocks()) {
-        const Row f = fields.at(block.row);
-        const AffineFields::Weights weights = f * f.transpose();
-        for (int i = 0; i < 3; ++i)
-            for (int j = i; j < 3; ++j) sums[i][j] += block.stiffness(i, j) * weights;
-    }
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
             AffineFields::add(sums[std::min(i, j)][std::max(i, j)], i, j, system);

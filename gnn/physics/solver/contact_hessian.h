@@ -41,6 +41,8 @@ class ContactHessian {
     /// deeper. Returns whether any block is not zero.
     bool anticipate(const Points& step);
 
+    // What follows is about the blocks that anticipate() has left.
+
     /// product += blocks * direction (free, n x 3).
     void add_product(const Points& direction, Points& product) const;
 
@@ -101,6 +103,17 @@ class ContactHessian {
 
         double along(const Points& direction) const;  ///< of a free array (n x 3)
     };
+    /// What contact, friction and a goal add up to at one vertex, packed: blocks are gone through
+    /// twice in each iteration of a solve.
+    struct Block {
+        int row;
+        double xx, xy, xz, yy, yz, zz;  ///< (N/m)
+
+        explicit Block(int of) : row(of), xx(0), xy(0), xz(0), yy(0), yz(0), zz(0) {}
+        /// Adds across I + (along - across) n n'.
+        void add(const Vec3& n, double along, double across);
+        void add(const Eigen::Matrix3d& symmetric);
+    };
     /// Those of the self-contacts that have a stiffness, packed: they are gone through twice in
     /// each iteration of a solve. Single precision changes the direction of a step by a rounding.
     struct Spring {
@@ -113,20 +126,24 @@ class ContactHessian {
     /// visit(free row, force) for the parts of blocks * direction.
     template <class Visit>
     void for_each_force(const Points& direction, const Visit& visit) const;
+    void begin_vertices(const IncrementalPotential& potential, const std::vector<int>& row_of);
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
     void begin_layer_friction(const LayerFriction& friction, const std::vector<int>& row_of);
+    void gather_blocks();
     void gather_springs();
     void add_springs(const Points& direction, Points& product) const;
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
 
-    double m_weight = 0.0;  ///< w (N/m^2)
-    std::vector<Contact> m_contacts;
+    double m_weight = 0.0;                      ///< w (N/m^2)
+    std::vector<int> m_vertex_of, m_slider_of;  ///< n: of each free row; -1: no slider
+    std::vector<Contact> m_contacts;            ///< ascending by row, as the sliders
     std::vector<Ridge> m_ridges;
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
     std::vector<LayerSlider> m_layer_sliders;  ///< its layer_friction().sliders()
+    std::vector<Block> m_blocks;
     std::vector<Spring> m_springs;
     mutable Points m_spring_forces;  ///< n x 3, scratch
     const SelfContactEnergy* m_self = nullptr;

@@ -1,14 +1,21 @@
 #include "gnn/physics/solver/supernodal_cholesky.h"
 
+#include <omp.h>
+
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cstring>
+#include <limits>
+#include <numeric>
 #include <type_traits>
+#include <utility>
 
 namespace cloth {
 namespace {
 
 constexpr int max_width = 8;          // columns of a panel: their y stay in eight vector registers
 constexpr double max_padding = 0.25;  // share of explicit zeros that is cheaper than another panel
+constexpr size_t enough_numbers = 60000;  // of a factor, to be worth waking a second thread for
 
 // x, y, z and a spare lane. Loads and stores go through memcpy: the memory is aligned for one lane.
 using FloatLanes = float __attribute__((vector_size(16)));
@@ -109,6 +116,26 @@ int panel_width(const Eigen::SparseMatrix<double>& lower, int first) {
     return width;
 }
 
+/// Trees that are shared out between two, the heaviest first, each to whom has less so far.
+struct Shares {
+    std::vector<char> of;  ///< each tree: 0 or 1
+    size_t larger = 0;
+
+    Shares(const std::vector<int>& trees, const std::vector<size_t>& weights) : of(trees.size()) {
+        std::vector<size_t> order(trees.size());
+        std::iota(order.begin(), order.end(), size_t(0));
+        const auto weight = [&](size_t k) { return weights[static_cast<size_t>(trees[k])]; };
+        std::stable_sort(order.begin(), order.end(),
+                         [&](size_t a, size_t b) { return weight(a) > weight(b); });
+        size_t sums[2] = {0, 0};
+        for (const size_t k : order) {
+            of[k] = sums[1] < sums[0] ? 1 : 0;
+            sums[static_cast<size_t>(of[k])] += weight(k);
+        }
+        larger = std::max(sums[0], sums[1]);
+    }
+};
+
 }  // namespace
 
 std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix) {
@@ -133,9 +160,12 @@ void SupernodalCholesky<Real>::build_panels(const Eigen::SparseMatrix<double>& l
     m_panels.clear();
     m_rows.clear();
     m_values.clear();
+    for (std::vector<int>* part : {&m_halves[0], &m_halves[1], &m_top, &m_top_rows}) part->clear();
     const int columns = static_cast<int>(lower.cols());
     for (int first = 0; first < columns; first += m_panels.back().width)
         append_panel(lower, first, panel_width(lower, first));
+    cut_in_halves();
+    give_second_half_copies();
 }
 
 template <class Real>
@@ -163,25 +193,164 @@ void SupernodalCholesky<Real>::append_panel(const Eigen::SparseMatrix<double>& l
     }
 }
 
+/// Opens the heaviest subtree of the elimination tree, again and again, which adds its root to the
+/// top, and keeps the cut for which the top and the larger half are least.
 template <class Real>
-void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
-    static thread_local std::vector<Real> lanes;  // x, y, z, and 0 for ever
-    const auto count = static_cast<size_t>(m_size);
-    if (lanes.size() < 4 * count) lanes.resize(4 * count, Real(0));
-    Real* work = lanes.data();
-    for (size_t i = 0; i < count; ++i)
-        for (size_t k = 0; k < 3; ++k) work[4 * i + k] = static_cast<Real>(b.data()[3 * i + k]);
-    for (const SupernodalPanel& panel : m_panels)
+void SupernodalCholesky<Real>::cut_in_halves() {
+    constexpr int most_cuts = 200;
+    const size_t count = m_panels.size();
+    std::vector<int> panel_of(static_cast<size_t>(m_size)), parent(count, -1), open;
+    std::vector<std::vector<int>> children(count);
+    std::vector<size_t> weights(count, 0);
+    for (size_t p = 0; p < count; ++p)
+        std::fill_n(panel_of.begin() + m_panels[p].first, m_panels[p].width, static_cast<int>(p));
+    for (size_t p = 0; p < count; ++p) {  // children come before their parents
+        weights[p] += numbers({static_cast<int>(p)});
+        if (m_panels[p].row_count > 0)
+            parent[p] = panel_of[static_cast<size_t>(m_rows[m_panels[p].rows_begin])];
+        auto& siblings = parent[p] < 0 ? open : children[static_cast<size_t>(parent[p])];
+        siblings.push_back(static_cast<int>(p));
+        if (parent[p] >= 0) weights[static_cast<size_t>(parent[p])] += weights[p];
+    }
+
+    constexpr char top = 2;
+    std::vector<char> place;  // of the roots of subtrees
+    size_t top_weight = 0, least = std::numeric_limits<size_t>::max();
+    for (int cut = 0; cut < most_cuts && !open.empty(); ++cut) {
+        const Shares shares(open, weights);
+        if (top_weight + shares.larger < least) {
+            least = top_weight + shares.larger;
+            place.assign(count, top);
+            for (size_t k = 0; k < open.size(); ++k)
+                place[static_cast<size_t>(open[k])] = shares.of[k];
+        }
+        const auto heaviest = std::max_element(open.begin(), open.end(), [&](int a, int b) {
+            return weights[static_cast<size_t>(a)] < weights[static_cast<size_t>(b)];
+        });
+        const int root = *heaviest;
+        open.erase(heaviest);
+        top_weight += numbers({root});
+        const auto& below = children[static_cast<size_t>(root)];
+        open.insert(open.end(), below.begin(), below.end());
+    }
+    for (size_t p = count; p-- > 0;)
+        if (parent[p] >= 0 && place[static_cast<size_t>(parent[p])] != top)
+            place[p] = place[static_cast<size_t>(parent[p])];
+    for (size_t p = 0; p < count; ++p) {
+        auto& panels = place[p] == top ? m_top : m_halves[static_cast<size_t>(place[p])];
+        panels.push_back(static_cast<int>(p));
+    }
+}
+
+/// Both halves subtract from the rows of the top: the second does so from copies.
+template <class Real>
+void SupernodalCholesky<Real>::give_second_half_copies() {
+    std::vector<int> copy(static_cast<size_t>(m_size), -1);
+    for (const int p : m_top)
+        for (int c = 0; c < m_panels[static_cast<size_t>(p)].width; ++c) {
+            const int row = m_panels[static_cast<size_t>(p)].first + c;
+            copy[static_cast<size_t>(row)] =
+                static_cast<int>(m_size) + static_cast<int>(m_top_rows.size());
+            m_top_rows.push_back(row);
+        }
+    for (const int p : m_halves[1]) {
+        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
+        for (int k = 0; k < panel.row_count; ++k) {
+            int& row = m_rows[panel.rows_begin + static_cast<size_t>(k)];
+            if (copy[static_cast<size_t>(row)] >= 0) row = copy[static_cast<size_t>(row)];
+        }
+    }
+}
+
+template <class Real>
+size_t SupernodalCholesky<Real>::numbers(const std::vector<int>& panels) const {
+    size_t sum = 0;
+    for (const int p : panels) {
+        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
+        sum +=
+            static_cast<size_t>(panel.width) * static_cast<size_t>(panel.width + panel.row_count);
+    }
+    return sum;
+}
+
+template <class Real>
+double SupernodalCholesky<Real>::critical_share() const {
+    const size_t larger = std::max(numbers(m_halves[0]), numbers(m_halves[1]));
+    return double(numbers(m_top) + larger) / double(std::max(m_values.size(), size_t(1)));
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::take(const std::vector<int>& panels, const Points& b,
+                                    Real* work) const {
+    for (const int p : panels) {
+        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
+        const double* from = b.data() + 3 * static_cast<size_t>(panel.first);
+        Real* to = work + 4 * static_cast<size_t>(panel.first);
+        for (int c = 0; c < panel.width; ++c, from += 3, to += 4)
+            for (int k = 0; k < 3; ++k) to[k] = static_cast<Real>(from[k]);
+    }
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::eliminate(const std::vector<int>& panels, Real* work) const {
+    for (const int p : panels) {
+        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
         OfWidth<Real>::eliminate[panel.width - 1](m_values.data() + panel.values_begin,
                                                   m_rows.data() + panel.rows_begin, panel.row_count,
                                                   work + 4 * panel.first, work);
-    for (auto panel = m_panels.rbegin(); panel != m_panels.rend(); ++panel)
-        OfWidth<Real>::substitute_back[panel->width - 1](
-            m_values.data() + panel->values_begin, m_rows.data() + panel->rows_begin,
-            panel->row_count, work + 4 * panel->first, work);
+    }
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::substitute_back(const std::vector<int>& panels, Real* work,
+                                               Points& x) const {
+    for (auto p = panels.rbegin(); p != panels.rend(); ++p) {
+        const SupernodalPanel& panel = m_panels[static_cast<size_t>(*p)];
+        Real* own = work + 4 * static_cast<size_t>(panel.first);
+        OfWidth<Real>::substitute_back[panel.width - 1](m_values.data() + panel.values_begin,
+                                                        m_rows.data() + panel.rows_begin,
+                                                        panel.row_count, own, work);
+        double* to = x.data() + 3 * static_cast<size_t>(panel.first);
+        for (int c = 0; c < panel.width; ++c, own += 4, to += 3)
+            for (int k = 0; k < 3; ++k) to[k] = double(own[k]);
+    }
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
+    static thread_local std::vector<Real> lanes;  // x, y, z, and 0 for ever
+    const auto count = static_cast<size_t>(m_size), copies = m_top_rows.size();
+    if (lanes.size() < 4 * (count + copies)) lanes.resize(4 * (count + copies), Real(0));
     x.resize(b.rows(), 3);
-    for (size_t i = 0; i < count; ++i)
-        for (size_t k = 0; k < 3; ++k) x.data()[3 * i + k] = double(work[4 * i + k]);
+    Real* const work = lanes.data();
+    Real* const copy = work + 4 * count;
+    const auto top_row = [&](size_t k) { return work + 4 * static_cast<size_t>(m_top_rows[k]); };
+    const int together = m_values.size() < enough_numbers ? 1 : std::min(2, omp_get_max_threads());
+#pragma omp parallel num_threads(together) if (together > 1)
+    {
+        const auto threads = static_cast<size_t>(omp_get_num_threads());
+        const auto first = static_cast<size_t>(omp_get_thread_num());
+        for (size_t half = first; half < 2; half += threads) {
+            take(m_halves[half], b, work);
+            if (half == 0)
+                take(m_top, b, work);
+            else
+                std::fill_n(copy, 4 * copies, Real(0));
+            eliminate(m_halves[half], work);
+        }
+#pragma omp barrier
+#pragma omp master
+        {
+            for (size_t k = 0; k < copies; ++k)
+                store<Real>(top_row(k), load(top_row(k)) + load(copy + 4 * k));
+            eliminate(m_top, work);
+            substitute_back(m_top, work, x);
+            for (size_t k = 0; k < copies; ++k) store<Real>(copy + 4 * k, load(top_row(k)));
+        }
+#pragma omp barrier
+        for (size_t half = first; half < 2; half += threads)
+            substitute_back(m_halves[half], work, x);
+    }
 }
 
 template class SupernodalCholesky<float>;

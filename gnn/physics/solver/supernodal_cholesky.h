@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <array>
 #include <vector>
 
 #include "data/core/types.h"
@@ -22,7 +23,9 @@ struct SupernodalPanel {
 
 /// Cholesky factor of a sparse symmetric positive-definite matrix, made for solving many times with
 /// three right-hand sides at once. Columns of equal structure are packed into dense panels of at
-/// most eight columns, and the coordinates of a vertex travel together in one vector register.
+/// most eight columns, and the coordinates of a vertex travel together in one vector register. The
+/// elimination tree is cut into two halves and a top: what the halves do, two threads do at once
+/// (where the matrix is large enough, and OpenMP gives two). The answer has the same bits with one.
 ///
 ///     const std::vector<int> order = elimination_order(matrix);  // number the unknowns by it
 ///     SupernodalCholesky<double> factor;
@@ -48,13 +51,19 @@ class SupernodalCholesky {
         : m_size(factor.m_size),
           m_panels(factor.m_panels),
           m_rows(factor.m_rows),
-          m_values(factor.m_values.begin(), factor.m_values.end()) {}
+          m_values(factor.m_values.begin(), factor.m_values.end()),
+          m_halves(factor.m_halves),
+          m_top(factor.m_top),
+          m_top_rows(factor.m_top_rows) {}
 
     /// x = A^-1 b for three columns (n x 3); b and x may be the same object.
     void solve(const Points& b, Points& x) const;
 
     Eigen::Index size() const { return m_size; }
     size_t nonzeros() const { return m_values.size(); }  ///< stored, with the padding of the panels
+    /// Of the numbers that a solve goes through, those that two threads have to, one after the
+    /// other: 0.5 if the halves are equal and there is no top, 1 if nothing can be shared.
+    double critical_share() const;
 
  private:
     template <class>
@@ -62,11 +71,20 @@ class SupernodalCholesky {
 
     void build_panels(const Eigen::SparseMatrix<double>& lower);
     void append_panel(const Eigen::SparseMatrix<double>& lower, int first, int width);
+    void cut_in_halves();
+    void give_second_half_copies();
+    size_t numbers(const std::vector<int>& panels) const;
+    void take(const std::vector<int>& panels, const Points& b, Real* work) const;
+    void eliminate(const std::vector<int>& panels, Real* work) const;
+    void substitute_back(const std::vector<int>& panels, Real* work, Points& x) const;
 
     Eigen::Index m_size = 0;  ///< n
     std::vector<SupernodalPanel> m_panels;
-    std::vector<int> m_rows;
+    std::vector<int> m_rows;  ///< those of the second half that are in the top: of its copies
     std::vector<Real> m_values;
+    std::array<std::vector<int>, 2> m_halves;  ///< panels, ascending: no row of one is in the other
+    std::vector<int> m_top;                    ///< panels, ascending: ancestors of the halves
+    std::vector<int> m_top_rows;  ///< of the top's columns; row k has its copy at m_size + k
 };
 
 }  // namespace cloth

@@ -1,6 +1,7 @@
 #include "gnn/physics/solver/quasi_newton.h"
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include <Eigen/Cholesky>
 #include <cstring>
@@ -150,6 +151,61 @@ TEST(SupernodalCholesky, TheOrderKeepsTheFactorSparse) {
     EXPECT_LT(3 * factor.nonzeros(), 2 * plain.nonzeros());
 }
 
+/// Of a sheet, its unknowns numbered as QuasiNewtonSystem does.
+Eigen::SparseMatrix<double> ordered_matrix(const TriMesh& rest) {
+    Eigen::SparseMatrix<double> matrix = cotangent_laplacian(rest);
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row) matrix.coeffRef(row, row) += 0.01;
+    const std::vector<int> order = elimination_order(matrix);
+    Eigen::PermutationMatrix<Eigen::Dynamic> number(matrix.rows());
+    for (size_t i = 0; i < order.size(); ++i) number.indices()[order[i]] = static_cast<int>(i);
+    return number * matrix * number.transpose();
+}
+
+TriMesh two_of(const TriMesh& mesh) {
+    const Eigen::Index count = mesh.vertices.rows();
+    TriMesh both{Points(2 * count, 3), Faces(2 * mesh.faces.rows(), 3)};
+    both.vertices << mesh.vertices, mesh.vertices;
+    both.faces << mesh.faces, mesh.faces.array() + static_cast<int>(count);
+    return both;
+}
+
+TEST(SupernodalCholesky, TwoThreadsShareASolveAndOneFindsTheSameBits) {
+    const int threads = omp_get_max_threads();
+    for (const TriMesh& rest : {sheet(9, 0.5, 0.3), sheet(70, 1.0, 0.3), two_of(sheet(50, 0.5))}) {
+        const Eigen::SparseMatrix<double> matrix = ordered_matrix(rest);
+        SupernodalCholesky<double> factor;
+        ASSERT_TRUE(factor.factorise(matrix));
+        const SupernodalCholesky<float> single(factor);
+        const Points b = noise(matrix.rows(), 1.0, 3);
+        Points by_one, by_two, single_by_one, single_by_two;
+        omp_set_num_threads(1);
+        factor.solve(b, by_one);
+        single.solve(b, single_by_one);
+        omp_set_num_threads(2);
+        factor.solve(b, by_two);
+        single.solve(b, single_by_two);
+        EXPECT_EQ(by_two, by_one);
+        EXPECT_EQ(single_by_two, single_by_one);
+        EXPECT_LE((matrix * by_two - b).norm(), 1e-12 * b.norm());
+        EXPECT_GE(factor.critical_share(), 0.5);
+        EXPECT_LE(factor.critical_share(), rest.vertices.rows() < 100 ? 0.9 : 0.65);
+    }
+    omp_set_num_threads(threads);
+}
+
+TEST(SupernodalCholesky, NothingIsSharedWhereEachUnknownNeedsTheOneBefore) {
+    Eigen::SparseMatrix<double> chain(50, 50);
+    for (int row = 0; row < 50; ++row) {
+        chain.insert(row, row) = 3.0;
+        if (row > 0) chain.insert(row, row - 1) = chain.insert(row - 1, row) = -1.0;
+    }
+    EXPECT_LE(error_of_solves<double>(chain), 1e-14);
+    EXPECT_LE(error_of_solves<float>(chain), 1e-6);
+    SupernodalCholesky<double> factor;
+    ASSERT_TRUE(factor.factorise(chain));
+    EXPECT_EQ(factor.critical_share(), 1.0);
+}
+
 TEST(SupernodalCholesky, RefusesAnIndefiniteMatrix) {
     Eigen::SparseMatrix<double> matrix(2, 2);
     matrix.insert(0, 0) = 1.0;
@@ -297,6 +353,50 @@ TEST(ContactHessian, BlocksOfRidgesAreTheirHessian) {
     matrix.gather(expected_all, expected);
     ASSERT_GT(expected.norm(), 0.0);
     EXPECT_LE((product - expected).norm(), 1e-9 * expected.norm());
+}
+
+TEST(ContactHessian, BlocksOfVerticesAreTheirContactAndFriction) {
+    SolverScene scene = sheet_on_sphere(30);
+    scene.state.x.col(1).array() -= 5e-3;  // friction reaches 6 mm
+    const Step step(scene);
+    QuasiNewtonMatrix matrix(scene.garment);
+    ContactHessian model;
+    model.begin_step(step.potential, matrix.row_of());
+    Points pressed = step.guess;
+    pressed.col(1).array() -= 1e-3;
+    model.linearise(step.potential, pressed);
+    ASSERT_TRUE(model.anticipate(Points::Zero(matrix.free_count(), 3)));
+
+    const Points direction = noise(scene.garment.vertex_count(), 1.0, 3);
+    Points expected = Points::Zero(direction.rows(), 3);
+    const SurfaceContacts& contacts = step.potential.contacts();
+    const PotentialSettings& settings = step.potential.settings();
+    int deep = 0;
+    for (Eigen::Index i = 0; i < direction.rows(); ++i) {
+        if (!contacts.has(i)) continue;
+        const Vec3 n = contacts.normal1.row(i);
+        const double height = n.dot(pressed.row(i) - contacts.point1.row(i));
+        const double depth = std::max(0.0, settings.contact_distance - height);
+        expected.row(i) +=
+            6.0 * settings.contact_weight * depth * direction.row(i).dot(n) * n.transpose();
+        deep += depth > 0.0;
+    }
+    const FrictionEnergy& friction = step.potential.friction();
+    for (const FrictionEnergy::Slider& slider : friction.sliders()) {
+        const Eigen::Matrix3d across =
+            Eigen::Matrix3d::Identity() - slider.normal * slider.normal.transpose();
+        const Vec3 slip = across * (pressed.row(slider.vertex).transpose() - slider.stick);
+        const double stiffness = slider.force / std::hypot(friction.slip(), slip.norm());
+        const Vec3 d = direction.row(slider.vertex);
+        expected.row(slider.vertex) += stiffness * (across * d).transpose();
+    }
+    ASSERT_GT(deep, 3);
+    ASSERT_GT(friction.sliders().size(), 3u);
+    Points free, product = Points::Zero(matrix.free_count(), 3), all;
+    matrix.gather(direction, free);
+    model.add_product(free, product);
+    matrix.scatter(product, all);
+    EXPECT_LE((all - expected).norm(), 1e-12 * expected.norm());
 }
 
 TEST(QuasiNewton, OneIterationIsExactInFreeFall) {
