@@ -89,6 +89,7 @@ MarkdownTable step_table(const std::vector<DataFile>& files) {
         {"fit_trees", "body: hierarchy fitted to a pose"},
         {"nearest_points", "nearest points of all vertices"},
         {"ridges", "contacts at ridges"},
+        {"limbs", "limbs that cloth ignores"},
         {"contact_projection", "contact projection, with nearest points"},
         {"begin_potential", "potential of the step"},
         {"strain", "strain and its gradient"},

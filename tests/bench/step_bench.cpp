@@ -14,6 +14,7 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
+#include "collision/proximity/limb_overlap.h"
 #include "collision/proximity/obstacle_trees.h"
 #include "collision/proximity/ridge_contacts.h"
 #include "collision/response/contact_projection.h"
@@ -143,6 +144,21 @@ void nearest_points(benchmark::State& state) {
     SurfaceContacts contacts;
     for_fitted(state, *trees, nothing, [&](const Moment& moment) {
         proximity.query(moment.solved, moment.boundary, contacts, StepEnd::end);
+    });
+}
+
+/// What the stepper does for limbs before a step. The trees are fitted, and the points at the start
+/// have been searched for, as by the step before.
+void limbs(benchmark::State& state) {
+    auto trees = std::make_shared<ObstacleTrees>();
+    Proximity proximity({}, trees);
+    LimbOverlap overlap({}, trees, &proximity);
+    SurfaceContacts contacts;
+    const auto prepare = [&](const Moment& moment) {
+        proximity.query(moment.state.x, moment.boundary, contacts);
+    };
+    for_fitted(state, *trees, prepare, [&](const Moment& moment) {
+        benchmark::DoNotOptimize(&overlap.filter(moment.boundary, dt, moment.state));
     });
 }
 
@@ -321,6 +337,7 @@ void whole_step(benchmark::State& state) {
     BENCHMARK(__VA_ARGS__)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMicrosecond)
 STAGE(fit_trees);
 STAGE(nearest_points);
+STAGE(limbs);
 STAGE(contact_projection);
 STAGE(ridges);
 STAGE(begin_potential);
