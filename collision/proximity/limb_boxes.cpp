@@ -76,9 +76,9 @@ LimbSet LimbBoxes::near(const Vec3& x, double reach) const {
     }
     LimbSet found = 0;
     for (size_t limb = 0; limb < max_limbs; ++limb) {  // no branches: eight at a time
-        const bool overlap = (m_low[0][limb] <= high[0]) & (m_high[0][limb] >= low[0]) &
-                             (m_low[1][limb] <= high[1]) & (m_high[1][limb] >= low[1]) &
-                             (m_low[2][limb] <= high[2]) & (m_high[2][limb] >= low[2]);
+        int overlap = 1;
+        for (size_t k = 0; k < 3; ++k)
+            overlap &= int(m_low[k][limb] <= high[k]) & int(m_high[k][limb] >= low[k]);
         found |= LimbSet(overlap) << limb;
     }
     return found;
@@ -101,7 +101,7 @@ LimbSet LimbBoxes::along(const Vec3& x, const Vec3& direction, double length) co
             enter = std::max(enter, std::min(low, high));
             leave = std::min(leave, std::max(low, high));
         }
-        const bool meets = (enter <= leave) & (m_low[0][limb] <= m_high[0][limb]);
+        const int meets = int(enter <= leave) & int(m_low[0][limb] <= m_high[0][limb]);
         found |= LimbSet(meets) << limb;
     }
     return found;

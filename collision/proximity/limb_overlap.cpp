@@ -8,6 +8,9 @@
 namespace cloth {
 namespace {
 
+// m: limbs are open where they are joined, so a point outside of the box may count as inside
+constexpr double around_limbs = 0.02;
+
 LimbSet only(size_t limb) {
     return LimbSet(1) << limb;
 }
@@ -218,14 +221,15 @@ void LimbOverlap::ignore_folded_at_start(const Boundary& boundary, const Points&
     ignore_folded(boundary, x, StepEnd::start);
 }
 
-/// Skin is not searched for again where it is carried to a place over which nothing lies.
+/// What is not in the box of a joined limb is not inside the limb.
 void LimbOverlap::ignore_folded_at_end(const Boundary& boundary, const Points& x) {
-    select_owners();
-    find_covers(boundary, StepEnd::end);
-    m_next.clear();
-    for (size_t k = 0; k < m_rows.size(); ++k)
-        if (m_covers[k]) m_next.push_back(m_rows[k]);
-    m_rows.swap(m_next);
+    m_rows.clear();
+    for (size_t i = 0; i < m_own.size(); ++i) {
+        const LimbSet others = ~(m_own[i] | m_unjoined[i]);
+        const auto vertex = static_cast<Eigen::Index>(i);
+        if (m_own[i] != 0 && (m_boxes.near(x.row(vertex), around_limbs) & others) != 0)
+            m_rows.push_back(static_cast<int>(i));
+    }
     find_own_skin(m_own_proximity, boundary, x, StepEnd::end);
     find_covers(boundary, StepEnd::end);
     ignore_folded(boundary, x, StepEnd::end);
