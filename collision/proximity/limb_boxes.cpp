@@ -8,15 +8,15 @@ namespace cloth {
 namespace {
 
 constexpr size_t most_meshes = 16;
-constexpr float infinity = std::numeric_limits<float>::infinity();
+constexpr float unbounded = std::numeric_limits<float>::infinity();
 
 /// At least as far out as the number that it was rounded from.
 float rounded_down(double x) {
-    return std::nextafter(static_cast<float>(x), -infinity);
+    return std::nextafter(static_cast<float>(x), -unbounded);
 }
 
 float rounded_up(double x) {
-    return std::nextafter(static_cast<float>(x), infinity);
+    return std::nextafter(static_cast<float>(x), unbounded);
 }
 
 }  // namespace
@@ -40,8 +40,8 @@ const LimbBoxes::Mesh& LimbBoxes::known(const Obstacle& obstacle) {
 }
 
 void LimbBoxes::fit(const Boundary& boundary, const std::vector<char>& has_limbs, StepEnd end) {
-    for (Row& row : m_low) row.fill(infinity);
-    for (Row& row : m_high) row.fill(-infinity);
+    for (Row& row : m_low) row.fill(unbounded);
+    for (Row& row : m_high) row.fill(-unbounded);
     for (size_t k = 0; k < boundary.obstacles.size(); ++k) {
         if (!has_limbs[k]) continue;
         const Obstacle& obstacle = boundary.obstacles[k];
