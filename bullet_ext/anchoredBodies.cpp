@@ -160,6 +160,16 @@ Vec3 AnchoredBodies::placeOf(const Hanging& hanging, const Anchor& anchor,
     return centreOf(*hanging.body) + way.head<3>() + turnOf(way.tail<3>()) * anchor.arm;
 }
 
+/// Of a node's velocity, by other things than accelerations.
+Vec3 AnchoredBodies::changeOf(Eigen::Index node, const Boundary& boundary, const ClothState& from,
+                              const ClothState& to) const {
+    Vec3 change = to.v.row(node) - from.v.row(node);
+    change -= m_length * boundary.gravity;
+    if (boundary.accelerations.size())
+        change -= m_length * boundary.accelerations.row(node).transpose();
+    return change;
+}
+
 /// u less what the impulses of the cloth make of it.
 VectorX AnchoredBodies::residual(const Boundary& boundary, const ClothState& from,
                                  const ClothState& to) const {
@@ -170,12 +180,8 @@ VectorX AnchoredBodies::residual(const Boundary& boundary, const ClothState& fro
         Vector6 impulse = Vector6::Zero();
         for (const Anchor& anchor : hanging.anchors) {
             const int i = anchor.node;
-            Vec3 velocity = to.v.row(i) - from.v.row(i);
-            velocity -= m_length * boundary.gravity;
-            if (boundary.accelerations.size())
-                velocity -= m_length * boundary.accelerations.row(i).transpose();
-            const Vec3 given =
-                m_length * m_mass_ratio * Vec3(m_internal.row(i)) - m_masses[i] * velocity;
+            const Vec3 given = m_length * m_mass_ratio * Vec3(m_internal.row(i)) -
+                               m_masses[i] * changeOf(i, boundary, from, to);
             impulse.head<3>() += given;
             impulse.tail<3>() += Vec3(turn * anchor.arm).cross(given);
         }
@@ -195,13 +201,8 @@ double AnchoredBodies::energy(const Stepper& stepper, const Boundary& boundary,
     const std::optional<double> internal = stepper.internal_energy(to.x);
     if (!internal) return 0.5 * m_residual.squaredNorm();
     double sum = m_mass_ratio * *internal;
-    for (Eigen::Index i = 0; i < to.x.rows(); ++i) {
-        Vec3 change = (to.x.row(i) - from.x.row(i)) / m_length - from.v.row(i);
-        change -= m_length * boundary.gravity;
-        if (boundary.accelerations.size())
-            change -= m_length * boundary.accelerations.row(i).transpose();
-        sum += 0.5 * m_masses[i] * change.squaredNorm();
-    }
+    for (Eigen::Index i = 0; i < to.x.rows(); ++i)
+        sum += 0.5 * m_masses[i] * changeOf(i, boundary, from, to).squaredNorm();
     for (size_t b = 0; b < m_bodies.size(); ++b) {
         const Vector6 change = turned(m_bodies[b].frame.transpose(), wayOf(b, m_u)) / m_length;
         sum += 0.5 * m_u.segment<6>(static_cast<Eigen::Index>(6 * b)).squaredNorm() -

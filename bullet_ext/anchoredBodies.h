@@ -71,6 +71,8 @@ class AnchoredBodies {
 
     Vector6 wayOf(size_t body, const VectorX& u) const;
     Vec3 placeOf(const Hanging& hanging, const Anchor& anchor, const Vector6& way) const;
+    Vec3 changeOf(Eigen::Index node, const Boundary& boundary, const ClothState& from,
+                  const ClothState& to) const;
     VectorX residual(const Boundary& boundary, const ClothState& from, const ClothState& to) const;
     double energy(const Stepper& stepper, const Boundary& boundary, const ClothState& from,
                   const ClothState& to) const;

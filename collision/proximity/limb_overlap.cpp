@@ -89,6 +89,7 @@ void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
         m_unjoined.assign(count, 0);
         m_ignored.assign(count, 0);
         m_without.assign(count, 0);
+        m_passed.assign(count, 0);
         m_proximity.query(x, boundary, m_near);
         m_near_own = m_near;
     }
@@ -102,6 +103,7 @@ void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
         m_own[vertex] = limb_of(boundary, i);
         for (size_t limb = 0; limb < max_limbs; ++limb)
             if (m_own[vertex] == only(limb)) m_unjoined[vertex] = ~m_joined[limb];
+        m_passed[vertex] = m_own[vertex] | m_unjoined[vertex];
     }
 }
 
@@ -162,15 +164,19 @@ void LimbOverlap::select_owners() {
         if (m_own[i] != 0) m_rows.push_back(static_cast<int>(i));
 }
 
+/// Those of them that are within reach (m) of the box of a limb that they do not pass over.
+void LimbOverlap::select_near(const Points& x, double reach, const std::vector<LimbSet>& passed) {
+    select_owners();
+    const auto is_far = [&](int i) {
+        return (m_boxes.near(x.row(i), reach) & ~passed[static_cast<size_t>(i)]) == 0;
+    };
+    m_rows.erase(std::remove_if(m_rows.begin(), m_rows.end(), is_far), m_rows.end());
+}
+
 /// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
 void LimbOverlap::find_covered(const Boundary& boundary, const Points& x, StepEnd end) {
-    m_rows.clear();
-    for (size_t i = 0; i < m_own.size(); ++i) {
-        m_without[i] = ~m_unjoined[i] | m_ignored[i];
-        const auto vertex = static_cast<Eigen::Index>(i);
-        if (m_own[i] != 0 && (m_boxes.near(x.row(vertex), m_settings.reach) & ~m_without[i]) != 0)
-            m_rows.push_back(static_cast<int>(i));
-    }
+    for (size_t i = 0; i < m_own.size(); ++i) m_without[i] = ~m_unjoined[i] | m_ignored[i];
+    select_near(x, m_settings.reach, m_without);
     for (Proximity* searches = &m_other_proximity; !m_rows.empty(); searches = &m_proximity) {
         searches->query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
         m_next.clear();
@@ -200,8 +206,6 @@ void LimbOverlap::find_own_skin(Proximity& searches, const Boundary& boundary, c
 /// Finds what lies over that skin of limbs that are joined to it; rows where that cannot be are
 /// dropped.
 void LimbOverlap::find_covers(const Boundary& boundary, StepEnd end) {
-    m_passed.resize(m_own.size());
-    for (size_t i = 0; i < m_own.size(); ++i) m_passed[i] = m_own[i] | m_unjoined[i];
     const bool start = end == StepEnd::start;
     const Points& points = start ? m_near_own.point0 : m_near_own.point1;
     const Points& normals = start ? m_near_own.normal0 : m_near_own.normal1;
@@ -223,13 +227,7 @@ void LimbOverlap::ignore_folded_at_start(const Boundary& boundary, const Points&
 
 /// What is not in the box of a joined limb is not inside the limb.
 void LimbOverlap::ignore_folded_at_end(const Boundary& boundary, const Points& x) {
-    m_rows.clear();
-    for (size_t i = 0; i < m_own.size(); ++i) {
-        const LimbSet others = ~(m_own[i] | m_unjoined[i]);
-        const auto vertex = static_cast<Eigen::Index>(i);
-        if (m_own[i] != 0 && (m_boxes.near(x.row(vertex), around_limbs) & others) != 0)
-            m_rows.push_back(static_cast<int>(i));
-    }
+    select_near(x, around_limbs, m_passed);
     find_own_skin(m_own_proximity, boundary, x, StepEnd::end);
     find_covers(boundary, StepEnd::end);
     ignore_folded(boundary, x, StepEnd::end);

@@ -78,6 +78,7 @@ class LimbOverlap {
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
     void ignore_covered();
     void select_owners();
+    void select_near(const Points& x, double reach, const std::vector<LimbSet>& passed);
     void find_own_skin(Proximity& searches, const Boundary& boundary, const Points& x, StepEnd end);
     void find_covers(const Boundary& boundary, StepEnd end);
     void ignore_folded_at_start(const Boundary& boundary, const Points& x);

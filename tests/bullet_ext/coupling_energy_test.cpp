@@ -221,7 +221,9 @@ Broken broken_by(const Outcome& outcome, const Bounds& bounds, bool balanced) {
 ///              balanced with the bodies as they are foreseen, which is not what is measured here
 void check(unsigned first, int count, double seconds, const Bounds& bounds, const Maker& make,
            double fixed = 0.0, const btGnnSolverSettings& settings = {}) {
-    const char* only = std::getenv("CLOTH_WORLD");  // for whoever looks into one world
+    const char* only = std::getenv("CLOTH_WORLD");     // for whoever looks into one world,
+    const char* others = std::getenv("CLOTH_WORLDS");  // or into others: FIRST,COUNT
+    if (others) std::sscanf(others, "%u,%d", &first, &count);
     std::string rare;
     int rare_count = 0;
     for (int k = 0; k < fewer_if_sanitized(count); ++k) {

@@ -205,7 +205,7 @@ void SupernodalCholesky<Real>::cut_in_halves() {
     for (size_t p = 0; p < count; ++p)
         std::fill_n(panel_of.begin() + m_panels[p].first, m_panels[p].width, static_cast<int>(p));
     for (size_t p = 0; p < count; ++p) {  // children come before their parents
-        weights[p] += numbers({static_cast<int>(p)});
+        weights[p] += m_panels[p].numbers();
         if (m_panels[p].row_count > 0)
             parent[p] = panel_of[static_cast<size_t>(m_rows[m_panels[p].rows_begin])];
         auto& siblings = parent[p] < 0 ? open : children[static_cast<size_t>(parent[p])];
@@ -229,7 +229,7 @@ void SupernodalCholesky<Real>::cut_in_halves() {
         });
         const int root = *heaviest;
         open.erase(heaviest);
-        top_weight += numbers({root});
+        top_weight += m_panels[static_cast<size_t>(root)].numbers();
         const auto& below = children[static_cast<size_t>(root)];
         open.insert(open.end(), below.begin(), below.end());
     }
@@ -265,11 +265,7 @@ void SupernodalCholesky<Real>::give_second_half_copies() {
 template <class Real>
 size_t SupernodalCholesky<Real>::numbers(const std::vector<int>& panels) const {
     size_t sum = 0;
-    for (const int p : panels) {
-        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
-        sum +=
-            static_cast<size_t>(panel.width) * static_cast<size_t>(panel.width + panel.row_count);
-    }
+    for (const int p : panels) sum += m_panels[static_cast<size_t>(p)].numbers();
     return sum;
 }
 

@@ -19,6 +19,7 @@ struct SupernodalPanel {
     int row_count;        ///< rows below the triangle
     size_t rows_begin;    ///< in the factor's rows
     size_t values_begin;  ///< in its values
+    size_t numbers() const { return size_t(width) * size_t(width + row_count); }
 };
 
 /// Cholesky factor of a sparse symmetric positive-definite matrix, made for solving many times with
