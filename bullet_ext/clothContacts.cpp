@@ -362,10 +362,13 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     const std::optional<double> start = energy(merged.x0, merged.v0), alone = energy(x1, v1),
                                 now = energy(merged.x, merged.v);
     if (start && alone && now) {
-        const bool worked_on = std::any_of(group.begin(), group.end(), [](const Member& member) {
-            return member.step->isWorkedOn() || !member.step->endsWithWorldStep();
-        });
-        const double most = worked_on ? std::max(*start, *alone) : *start;
+        // Contact makes no energy; nor do steps that nothing works on.
+        const auto any = [&](auto what) { return std::any_of(group.begin(), group.end(), what); };
+        double most = *alone;
+        if (any([](const Member& member) { return !member.step->endsWithWorldStep(); }))
+            most = std::max(*start, *alone);
+        else if (!any([](const Member& member) { return member.step->isWorkedOn(); }))
+            most = *start;
         calm(*now - most, merged.masses, merged.v);
     }
     for (size_t k = 0; k < group.size(); ++k) {

@@ -1,12 +1,11 @@
 #include "collision/self/rigid_impact_zones.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace cloth {
 
-RigidImpactZones::RigidImpactZones(const Garment& garment, VectorX masses)
-    : m_masses(masses.size() > 0 ? std::move(masses) : garment.masses()),
+RigidImpactZones::RigidImpactZones(const Garment& garment, const VectorX& masses)
+    : m_masses(masses.size() > 0 ? masses : garment.masses()),
       m_pinned(garment.is_pinned()),
       m_parent(static_cast<size_t>(garment.vertex_count()), -1) {
 }

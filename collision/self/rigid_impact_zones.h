@@ -17,7 +17,7 @@ namespace cloth {
 class RigidImpactZones {
  public:
     /// @param masses  |V| (kg), above 0; none: the garment's
-    explicit RigidImpactZones(const Garment& garment, VectorX masses = {});
+    explicit RigidImpactZones(const Garment& garment, const VectorX& masses = {});
 
     /// Forgets all zones. @param x  |V| x 3 (m): where the step would have ended
     void begin(const Points& x);

@@ -18,6 +18,8 @@ constexpr double gap_share = 0.25;      // of the thickness, at which cloth is l
 constexpr int zone_rounds = 50;         // each joins zones that touch, so they end
 constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
                                         // nothing cannot be told from elements that touch
+constexpr double torn = 1.5;            // times its rest length, of an edge that
+constexpr double torn_growth = 1.2;     // was drawn out by so much more than the step would have
 
 VectorX inverses(const VectorX& masses, const std::vector<char>& pinned) {
     VectorX inverse = masses.cwiseInverse();
@@ -40,13 +42,15 @@ SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& se
       m_guard(garment, growth),
       m_zones(garment, masses),
       m_rest(garment.rest().vertices),
+      m_edges(garment.edges()),
       m_piece(garment_pieces(garment)),
+      m_free_masses(garment.pins().empty() ? masses : VectorX()),
       m_held(static_cast<size_t>(garment.vertex_count()), 0) {
     check_self_contact(settings);
 }
 
 SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts& contacts,
-                                        double distance, Points& x) {
+                                        double distance, Points& x, bool may_pass) {
     SelfResolveReport report;
     m_moved.clear();
     m_pairs.clear();
@@ -72,6 +76,8 @@ SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts&
         }
         report.rigid = m_zones.vertex_count();
     }
+    if (may_pass && release_torn(contacts, x))
+        report.left = static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
     report.keeps_untangled = report.left == 0 && m_crossings.passed_over_none();
     note_moved(x);
     return report;
@@ -111,6 +117,29 @@ void SelfResolver::hold_vertices(const SurfaceContacts& contacts, double distanc
             m_push.add({i, i, i}, {1.0, 0.0, 0.0}, normal,
                        normal.dot(contacts.point1.row(i)) + distance);
         }
+}
+
+/// Puts the ends of torn edges back where the step would have ended; the whole follows, so that
+/// cloth that nothing holds keeps its momentum. Returns whether there are any.
+bool SelfResolver::release_torn(const SurfaceContacts& contacts, Points& x) const {
+    const auto length = [](const std::array<int, 2>& edge, const Points& points) {
+        return (points.row(edge[0]) - points.row(edge[1])).norm();
+    };
+    bool any = false, found = true;
+    while (found) {  // what was put back may tear its neighbours
+        found = false;
+        for (const auto& edge : m_edges) {
+            const double now = length(edge, x);
+            if (!(now > torn * length(edge, m_rest)) ||
+                !(now > torn_growth * length(edge, m_before)))
+                continue;
+            for (const int i : edge) x.row(i) = m_before.row(i);
+            found = any = true;
+        }
+    }
+    if (any && contacts.obstacle.empty() && m_free_masses.size() > 0)
+        x.rowwise() -= (m_free_masses.transpose() * (x - m_before)) / m_free_masses.sum();
+    return any;
 }
 
 void SelfResolver::note_moved(const Points& x) {

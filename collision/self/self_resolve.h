@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "collision/proximity/proximity.h"
@@ -44,8 +45,10 @@ class SelfResolver {
     /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt, or empty
     /// @param distance  of vertices from the obstacles (m) that is held
     /// @param x         |V| x 3 (m): positions at t + dt; pinned vertices do not move
+    /// @param may_pass  cloth that would be drawn out to more than 1.5 of its length is let go, and
+    ///                  passes through: for what is tangled at t, and untangled afterwards
     SelfResolveReport resolve(const Points& x0, const SurfaceContacts& contacts, double distance,
-                              Points& x);
+                              Points& x, bool may_pass = false);
 
     /// Vertices that the last resolve() may have moved, each once.
     const std::vector<int>& moved() const { return m_moved; }
@@ -56,6 +59,7 @@ class SelfResolver {
     void push(const SurfaceContacts& contacts, double distance, Points& x);
     void hold_vertices(const SurfaceContacts& contacts, double distance);
     double gap(const ElementPair& elements) const;
+    bool release_torn(const SurfaceContacts& contacts, Points& x) const;
     void note_moved(const Points& x);
 
     SelfContactSettings m_settings;
@@ -64,7 +68,9 @@ class SelfResolver {
     StrainLimiter m_guard;
     RigidImpactZones m_zones;
     Points m_rest;  ///< |V| x 3 (m)
+    std::vector<std::array<int, 2>> m_edges;
     std::vector<int> m_piece;
+    VectorX m_free_masses;  ///< |V| (kg); none where there are pins
     std::vector<SelfPair> m_pairs;  ///< of all rounds
     std::vector<char> m_held;       ///< |V|
     std::vector<int> m_moved;

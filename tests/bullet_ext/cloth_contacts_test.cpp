@@ -243,36 +243,32 @@ TEST(ClothContacts, FrictionHoldsWhatItShouldAtAnyTimeStep) {
 }
 
 TEST(ClothContacts, WhatLiesOnTheUpperSheetIsBorneByTheLowerOne) {
-    btGnnSoftBodySolver solver(quasi_newton(), touching());
-    World world(&solver);
-    btSoftBody* below = asking(world.add(patch(world.info(), {0, 0, 0}, 11, 1 + 2 + 4 + 8)));
-    btSoftBody* above = asking(world.add(half_patch(world.info(), {0, 0.02f, 0}, 9)));
-    btRigidBody* ball = world.add(new btSphereShape(0.08f), {0, 0.15f, 0}, false, 0.1f);
-    ball->setActivationState(DISABLE_DEACTIVATION);
-    const Whole whole{solver, {below, above}};
-    int most = 0;
-    std::vector<Vec3> places;
-    const auto centre = [&] { return toVec3(ball->getWorldTransform().getOrigin()); };
-    for (int i = 0; i < 60 * 8; ++i) {
-        world.step(1.0 / 60);
-        places.push_back(centre());
-        most = std::max(most, whole.tangles());
+    for (const float off : {0.0f, 1e-4f, 2e-4f}) {  // m: what swings, does not rest by chance
+        btGnnSoftBodySolver solver(quasi_newton(), touching());
+        World world(&solver);
+        btSoftBody* below = asking(world.add(patch(world.info(), {0, 0, 0}, 11, 1 + 2 + 4 + 8)));
+        btSoftBody* above = asking(world.add(half_patch(world.info(), {0, 0.02f, 0}, 9)));
+        btRigidBody* ball = world.add(new btSphereShape(0.08f), {off, 0.15f, 0}, false, 0.1f);
+        ball->setActivationState(DISABLE_DEACTIVATION);
+        const Whole whole{solver, {below, above}};
+        int most = 0;
+        const auto centre = [&] { return toVec3(ball->getWorldTransform().getOrigin()); };
+        Vec3 second_before_end = Vec3::Zero();
+        for (int i = 0; i < 60 * 8; ++i) {
+            if (i == 60 * 7) second_before_end = centre();
+            world.step(1.0 / 60);
+            most = std::max(most, whole.tangles());
+        }
+        EXPECT_EQ(most, 0);
+        const auto nearest = [&](const btSoftBody& body) {
+            const Points x = nodePositions(body);
+            return (x.rowwise() - centre().transpose()).rowwise().norm().minCoeff();
+        };
+        EXPECT_NEAR(nearest(*above), 0.08, 0.01) << "the ball lies on the upper sheet";
+        EXPECT_GT(nearest(*below), 0.079);
+        EXPECT_GT(centre().y(), -0.4) << "the corners hold it";
+        EXPECT_LT((centre() - second_before_end).norm(), 0.01) << "it rests";
     }
-    const auto mean = [&](int second) {
-        Vec3 sum = Vec3::Zero();
-        for (size_t i = 0; i < 60; ++i) sum += places[60 * size_t(second) + i];
-        return Vec3(sum / 60.0);
-    };
-    EXPECT_EQ(most, 0);
-    const auto nearest = [&](const btSoftBody& body) {
-        return (nodePositions(body).rowwise() - centre().transpose()).rowwise().norm().minCoeff();
-    };
-    EXPECT_NEAR(nearest(*above), 0.08, 0.01) << "the ball lies on the upper sheet";
-    EXPECT_GT(nearest(*below), 0.079);
-    EXPECT_GT(centre().y(), -0.4) << "the corners hold it";
-    EXPECT_LT((mean(7) - mean(6)).norm(), 0.01) << "it rests, but for a swing";
-    for (size_t i = 60 * 7; i < places.size(); ++i)
-        EXPECT_LT((places[i] - mean(7)).norm(), 0.025) << "of step " << i;
 }
 
 /// Sheets that are thrown at each other in empty space.

@@ -33,9 +33,10 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
     m_last = {};
     m_next_untangled.resize(0, 3);
     const bool obstacles = !boundary.obstacles.empty();
+    const bool tangled = m_untangling && !same(x0, m_untangled);
     for (int pass = 0; pass < passes; ++pass) {
         const SelfResolveReport resolved =
-            m_tools->resolver.resolve(x0, obstacles ? contacts : m_none, distance, x);
+            m_tools->resolver.resolve(x0, obstacles ? contacts : m_none, distance, x, tangled);
         m_last.crossings += resolved.crossings;
         m_last.rounds += resolved.rounds;
         m_last.rigid = std::max(m_last.rigid, resolved.rigid);

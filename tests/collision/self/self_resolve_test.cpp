@@ -172,6 +172,42 @@ TEST(SelfResolver, ARollThatIsShakenHardDoesNotTangle) {
     }
 }
 
+TEST(SelfResolver, TearsNoClothThatMayPass) {
+    const Garment garment = strip(600);
+    const auto longest_of = [&](const Points& x, const Points& before) {
+        double longest = 0.0;  // of those that the resolver has drawn out
+        for (const auto& [a, b] : garment.edges()) {
+            const auto length = [&, p = a, q = b](const Points& at) {
+                return (at.row(p) - at.row(q)).norm();
+            };
+            if (length(x) > 1.2000001 * length(before))
+                longest = std::max(longest, length(x) / length(garment.rest().vertices));
+        }
+        return longest;
+    };
+    int torn = 0, tangled = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        std::mt19937 random(seed);
+        const Points x0 = wound(garment.rest().vertices, uniform(random, 5e-3, 8e-3));
+        const Points before =
+            x0 + crumpling(x0.rowwise() + Eigen::RowVector3d(random_point(random, 0.1)),
+                           uniform(random, 4e-3, 1.2e-2));
+        Points held = before, let_go = before;
+        SelfResolver resolver(garment, settings(1));
+        EXPECT_EQ(resolver.resolve(x0, {}, 0.0, held).left, 0) << seed;
+        const SelfResolveReport report = resolver.resolve(x0, {}, 0.0, let_go, true);
+        torn += longest_of(held, before) > 1.5;
+        tangled += report.left > 0;
+        EXPECT_LE(longest_of(let_go, before), 1.5000001) << seed;
+        EXPECT_LT(momentum(garment, let_go - before).norm(), 1e-12) << seed;
+        if (longest_of(held, before) <= 1.5) {
+            EXPECT_EQ(held, let_go) << seed;
+        }
+    }
+    EXPECT_GE(torn, 5);
+    EXPECT_GE(tangled, 3);
+}
+
 TEST(SelfResolver, WhatDoesNotCrossKeepsItsBits) {
     const Garment garment = strip();
     SelfResolver resolver(garment, settings());
