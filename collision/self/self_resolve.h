@@ -70,7 +70,7 @@ class SelfResolver {
     Points m_rest;  ///< |V| x 3 (m)
     std::vector<std::array<int, 2>> m_edges;
     std::vector<int> m_piece;
-    VectorX m_free_masses;  ///< |V| (kg); none where there are pins
+    VectorX m_free_masses;          ///< |V| (kg); none where there are pins
     std::vector<SelfPair> m_pairs;  ///< of all rounds
     std::vector<char> m_held;       ///< |V|
     std::vector<int> m_moved;
