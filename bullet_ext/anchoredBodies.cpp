@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "bullet_ext/softBodyGarment.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr int kTrials = 8;
 constexpr double kClose = 5e-4;                    // m: by so little an anchor may be wrong
+constexpr double kResidual = 3e-2;                 // of accurate steps of the cloth
 constexpr double kFarthestWay = 0.3, kTurn = 0.6;  // m, rad: that a body is moved
 
 Eigen::Matrix3d turnOf(const Vec3& way) {
@@ -50,6 +52,7 @@ Vector6 turned(const Eigen::Matrix3d& turn, const Vector6& motion) {
 bool AnchoredBodies::begin(const btSoftBody& body, const Garment& garment, double length) {
     m_bodies.clear();
     m_trials = 0;
+    m_best.x.resize(0, 3);
     m_garment = &garment;
     m_length = length;
     const std::vector<int>& pins = garment.pins();
@@ -124,7 +127,7 @@ void AnchoredBodies::setInverse(size_t body, const Matrix6& mass, Eigen::MatrixX
     inverse.block<6, 6>(at, at) = (Matrix6::Identity() + scaled).inverse();
 }
 
-/// The inverse Jacobian if nothing but the mass of the cloth resisted, as far as a stretch wave
+/// The inverse Hessian if nothing but the mass of the cloth resisted, as far as a stretch wave
 /// runs.
 void AnchoredBodies::findFollowing(const Points& x) {
     const Fabric& fabric = m_garment->fabric();
@@ -237,17 +240,27 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
                               ClothState& to, StepReport& report) {
     const bool first = m_trials++ == 0;
     if (!report.finite) {
-        if (first) return false;
+        if (m_best.x.rows() == 0) return false;
         m_u = m_best_u;
         to = m_best;
         report = m_best_report;
         return false;
     }
     if (!stepper.internal_forces(to.x, m_internal)) return false;
+    if (first && !m_accurate) {
+        m_residual = residual(boundary, from, to);
+        if (motion(m_u, m_u - m_follows * m_residual) < kClose) return false;
+        m_accurate = true;
+        m_trials = 0;
+        m_best = to;
+        m_best_report = report;
+        return true;
+    }
     const VectorX last = m_residual;
     m_residual = residual(boundary, from, to);
     if (!first) updateInverse(m_u - m_last_u, m_residual - last);
     const double merit = energy(stepper, boundary, from, to);
+    if (first) m_trusted = std::numeric_limits<double>::infinity();
     if (first || merit < m_least) {
         m_least = merit;
         m_best_u = m_u;
@@ -261,6 +274,7 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
     if (m_trials == kTrials || !next.allFinite() ||
         motion(m_u, m_u - m_follows * m_residual) < kClose) {
         if (m_trials > 1 && m_best_u.isZero(0.0)) m_inverse.resize(0, 0);  // it has led astray
+        m_accurate = m_trials > 1;
         m_u = m_best_u;
         to = m_best;
         report = m_best_report;
@@ -275,28 +289,34 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
     return true;
 }
 
-/// The step of Broyden's method from the best trial, if it leads downhill. A step that has made
-/// energy is cut to where a parabola through it and the best trial is least, unless that is far.
-VectorX AnchoredBodies::nextTrial(double merit) const {
+/// The step of the quasi-Newton method from the best trial, as far as it is trusted. A step that
+/// has made energy is cut to where a parabola through it and the best trial is least, unless that
+/// is far.
+VectorX AnchoredBodies::nextTrial(double merit) {
     constexpr double kNear = 0.5, kNearest = 0.1;  // of the last step
     const VectorX last = m_u - m_best_u;
     const double slope = m_best_residual.dot(last);
+    if (merit <= m_least) m_trusted *= 2.0;
     if (merit > m_least && slope < 0.0) {
         const double part = -0.5 * slope / (merit - m_least - slope);
+        m_trusted = std::clamp(part, kNearest, kNear) * last.norm();
         if (part < kNear) return m_best_u + std::max(kNearest, part) * last;
     }
     const VectorX step = -m_inverse * m_best_residual;
-    if (m_best_residual.dot(step) > 0.0) return m_best_u - m_follows * m_best_residual;
-    return m_best_u + step;
+    return m_best_u + std::min(1.0, m_trusted / step.norm()) * step;
 }
 
-/// Broyden's, for a step s of u and the change y of the residual.
+/// BFGS, for a step s of u and the change y of the residual.
 void AnchoredBodies::updateInverse(const VectorX& s, const VectorX& y) {
-    const VectorX image = m_inverse * y;
-    const double scale = s.dot(image);
-    if (!(std::abs(scale) > 1e-12 * s.squaredNorm())) return;
-    const Eigen::RowVectorXd row = s.transpose() * m_inverse;
-    m_inverse += (s - image) * row / scale;
+    const double curvature = s.dot(y);
+    if (!(curvature > 1e-12 * s.norm() * y.norm())) return;
+    const Eigen::MatrixXd left =
+        Eigen::MatrixXd::Identity(s.size(), s.size()) - s * y.transpose() / curvature;
+    m_inverse = (left * m_inverse * left.transpose() + s * s.transpose() / curvature).eval();
+}
+
+double AnchoredBodies::mostResidual() const {
+    return m_accurate ? kResidual : std::numeric_limits<double>::infinity();
 }
 
 void AnchoredBodies::place(ClothState& to) {

@@ -21,12 +21,13 @@ namespace cloth {
 ///     w = h M^-1 J(w)
 ///
 /// with the impulse J that the cloth gives it in a step that ends there. Each trial of w is a step
-/// of the cloth. Broyden's method finds it (Nocedal and Wright, Numerical Optimization, 2006,
-/// section 11.1), in coordinates in which the mass of the body and the anchored nodes is the
-/// identity. It goes on with the Jacobian of the last step, and begins with one that is too stiff
-/// rather than too soft. The step is the minimum of an incremental potential, so trials are judged
-/// by that: one that makes energy is cut. A body so heavy that the cloth hardly moves it takes one
-/// trial, others take up to eight. What is left after that, TwoWayCoupling hands to body and cloth.
+/// of the cloth. The step is the minimum of an incremental potential, and BFGS finds it (Nocedal
+/// and Wright, Numerical Optimization, 2006, section 6.1), in coordinates in which the mass of the
+/// body and the anchored nodes is the identity. It goes on with the inverse Hessian of the last
+/// step, and begins with one that is too stiff rather than too soft. A trial that makes energy is
+/// cut, and steps are trusted no farther than trials have shown. A body so heavy that the cloth
+/// hardly moves it takes one trial; others take up to eight of more accurate steps of the cloth.
+/// What is left after that, TwoWayCoupling hands to body and cloth.
 class AnchoredBodies {
  public:
     /// Bodies that hard anchors of the cloth hold, as Bullet has moved them.
@@ -43,6 +44,11 @@ class AnchoredBodies {
     ///                 the fabric's forces
     bool tryAgain(const Stepper& stepper, const ClothState& from, Boundary& boundary,
                   ClothState& to, StepReport& report);
+
+    /// That the next step of the cloth should keep to, see Stepper::set_most_residual(). What pulls
+    /// stiff cloth is known only where the step is near its minimum; steps that take one trial need
+    /// no more than they do anyway.
+    double mostResidual() const;
 
     /// Moves the bodies to where the cloth step found them.
     /// @param to  end of the cloth step: anchored nodes are put on their anchors, to the bit
@@ -79,7 +85,7 @@ class AnchoredBodies {
     void guessInverse();
     void findFollowing(const Points& x);
     void setInverse(size_t body, const Matrix6& mass, Eigen::MatrixXd& inverse) const;
-    VectorX nextTrial(double merit) const;
+    VectorX nextTrial(double merit);
     void updateInverse(const VectorX& s, const VectorX& y);
     void limit(VectorX& u) const;
     double motion(const VectorX& u0, const VectorX& u1) const;
@@ -90,8 +96,10 @@ class AnchoredBodies {
     double m_length = 0.0;      ///< (s)
     double m_mass_ratio = 1.0;  ///< massRatio()
     int m_trials = 0;
+    bool m_accurate = false;
+    double m_trusted = 0.0;     ///< length of a step of u (sqrt J)
     Points m_internal;          ///< |V| x 3 (N)
-    Eigen::MatrixXd m_inverse;  ///< of the Jacobian of the residual; goes on with the next step
+    Eigen::MatrixXd m_inverse;  ///< of the Hessian; goes on with the next step
     double m_inverse_length = 0.0;
     Eigen::MatrixXd m_follows;  ///< the same, if only the mass of the cloth resisted
     VectorX m_u, m_last_u;      ///< 6 for each body (sqrt J): root w / h, along its principal axes

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "bullet_ext/slidingFriction.h"
 #include "bullet_ext/softAnchors.h"
@@ -408,6 +409,8 @@ void SoftBodyStep::solve() {
     do {
         m_solved = from;
         if (m_deadline.is_set()) m_stepper->set_max_ms(std::max(1e-3, m_deadline.left()));
+        m_stepper->set_most_residual(m_hang ? m_anchored.mostResidual()
+                                            : std::numeric_limits<double>::infinity());
         m_report = m_stepper->step(m_boundary, m_cloth_step.length, m_solved);
         m_report.finite = m_report.finite && fitsFloats(m_solved.x) && fitsFloats(m_solved.v);
         times += m_report.times;

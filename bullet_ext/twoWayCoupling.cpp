@@ -366,12 +366,25 @@ void TwoWayCoupling::settle(const ClothStep& step, btRigidBody& body, Account& a
         if (change.head<3>().norm() > most) change *= most / change.head<3>().norm();
     }
     change.tail<3>() = limitedTurn(turning, change.tail<3>(), step.length);
+    if (account.anchored && floatsFreely(m_body, step))
+        returnToCloth(step,
+                      (account.taken + account.planned - mass * moved - both * change).head<3>());
     for (const Follower& follower : followers) {
         const Vec3 follows = change.head<3>() + change.tail<3>().cross(follower.arm);
         step.to.v.row(follower.node) += follower.weight * follows.transpose();
     }
     account.planned = mass * (moved + change);
     account.plan_time = step.length;
+}
+
+/// Nothing but bodies holds the cloth: what these did not take of an impulse (N s), it keeps.
+void TwoWayCoupling::returnToCloth(const ClothStep& step, const Vec3& impulse) {
+    VectorX masses = m_masses;
+    for (const int pin : step.garment.pins()) masses[pin] = 0.0;
+    const double mass = masses.sum();
+    if (!(mass > 0.0)) return;
+    for (Eigen::Index i = 0; i < masses.size(); ++i)
+        if (masses[i] > 0.0) step.to.v.row(i) += impulse.transpose() / mass;
 }
 
 /// What node forces, moving solids that cannot be pushed, and pins that are no anchors of dynamic
@@ -403,8 +416,11 @@ double TwoWayCoupling::workFromOutside(const ClothStep& step) const {
 /// where it took some of them.
 void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
     std::vector<EnergyBalance::Share> shares;
-    for (auto& [body, account] : m_accounts)
+    Vec3 momentum = Vec3::Zero();  // that the balance adds (N s)
+    for (auto& [body, account] : m_accounts) {
         shares.push_back({body, &account.planned, account.anchored, account.lift});
+        momentum -= account.planned.head<3>();
+    }
     const EnergyBalance::Result result =
         m_energy.settle(step,
                         {m_masses, m_mass_ratio, workFromOutside(step),
@@ -414,6 +430,7 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
     m_held_back = result.held;
     for (auto& [body, account] : m_accounts) account.gain = gainOf(*body, account.planned);
     if (!result.limited) return;
+    for (const auto& [body, account] : m_accounts) momentum += account.planned.head<3>();
     for (const int pin : step.garment.pins()) {
         const auto found = m_accounts.find(m_holder[static_cast<size_t>(pin)]);
         if (found == m_accounts.end()) continue;
@@ -421,8 +438,11 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
         const Vector6 after = motionOf(body) + solve(massMatrix(body), found->second.planned);
         const Vec3 arm = Vec3(step.to.x.row(pin)) - centreOf(body);
         const Vec3 velocity = after.head<3>() + after.tail<3>().cross(arm);
-        if (fitsFloats(velocity)) step.to.v.row(pin) = velocity;
+        if (!fitsFloats(velocity)) continue;
+        momentum += m_masses[pin] * (velocity - Vec3(step.to.v.row(pin)));
+        step.to.v.row(pin) = velocity;
     }
+    if (floatsFreely(m_body, step)) returnToCloth(step, -momentum);
 }
 
 /// The pointer of a body that is gone must not be followed.

@@ -110,6 +110,7 @@ class TwoWayCoupling {
     std::vector<Follower> followersOf(const ClothStep& step, const btRigidBody& body,
                                       const Account& account) const;
     void settle(const ClothStep& step, btRigidBody& body, Account& account);
+    void returnToCloth(const ClothStep& step, const Vec3& impulse);
     void balanceEnergy(const ClothStep& step);
     double workFromOutside(const ClothStep& step) const;
 

@@ -118,6 +118,15 @@ class Stepper {
         return false;
     }
 
+    /// Steps go on from now on, beyond what its settings ask for, until StepReport::residual is at
+    /// most this (above 0; infinity: as the settings say): what pulls the cloth is known as well as
+    /// that.
+    /// @return  false: this stepper goes on for as long as it does
+    virtual bool set_most_residual(double most) {
+        (void)most;
+        return false;
+    }
+
     /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
     /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know

@@ -83,8 +83,9 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
         return report;
     }
     const auto met = [&] {
-        return report.residual <= limits.tolerance ||
-               (report.gain && *report.gain < limits.least_gain);
+        return report.residual <= limits.most_residual &&
+               (report.residual <= limits.tolerance ||
+                (report.gain && *report.gain < limits.least_gain));
     };
     Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
     gain.after(report.energy);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -17,6 +18,7 @@ struct IterationLimits {
     int least_iterations = 0;  ///< but not fewer than these, 0 to 10000
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
     double least_gain = 0.0;   ///< or when MinimiseReport::gain is below this (m), 0 to 1; 0: never
+    double most_residual = std::numeric_limits<double>::infinity();  ///< but not above this one
 
     /// What a simulation should use: ten iterations, and more, up to a hundred, for as long as five
     /// of them still gain 3 mm (gravity alone gains 11 mm in a frame of 1/30 s). The residual does

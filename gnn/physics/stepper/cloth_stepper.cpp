@@ -110,6 +110,11 @@ bool ClothStepper::set_max_iterations(int most) {
     return m_solver->settings().minimiser != MinimiserKind::newton;
 }
 
+bool ClothStepper::set_most_residual(double most) {
+    m_solver->set_most_residual(most);
+    return m_solver->settings().minimiser != MinimiserKind::newton;
+}
+
 bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
     m_solver->internal_forces(x, forces);
     return true;

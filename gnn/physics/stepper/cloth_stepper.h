@@ -118,6 +118,7 @@ class ClothStepper : public Stepper {
     bool set_max_ms(double ms) override;
     /// Newton's method takes no notice (false).
     bool set_max_iterations(int most) override;
+    bool set_most_residual(double most) override;
     bool is_independent() const override { return m_solver->is_independent(); }
     bool internal_forces(const Points& x, Points& forces) const override;
     std::optional<double> internal_energy(const Points& x) const override {

@@ -65,6 +65,7 @@ class EmbeddedStepper : public Stepper {
     /// Of the proxy's step: what the fine garment takes comes on top.
     bool set_max_ms(double ms) override { return m_stepper->set_max_ms(ms); }
     bool set_max_iterations(int most) override { return m_stepper->set_max_iterations(most); }
+    bool set_most_residual(double most) override { return m_stepper->set_most_residual(most); }
     const std::vector<LimbSet>& ignored_limbs() const override { return m_ignored; }
 
     const Garment& proxy() const { return *m_proxy; }

@@ -11,6 +11,8 @@
 namespace cloth {
 namespace {
 
+constexpr int most_iterations = 200;  // towards a residual that is asked for
+
 const StepSettings& checked(const StepSettings& settings) {
     check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
@@ -63,7 +65,17 @@ void StepSolver::prepare(double dt) {
         m_quasi_newton.prepare(*m_garment, bdf2_inertial_dt(dt));
 }
 
-IterationLimits StepSolver::capped(IterationLimits limits) const {
+/// By what was set for the time being.
+IterationLimits StepSolver::adjusted(IterationLimits limits) const {
+    if (!std::isinf(m_most_residual)) {
+        const bool of_a_number = limits.tolerance == 0.0 && limits.least_gain == 0.0;
+        if (of_a_number) {
+            limits.least_iterations = limits.iterations;
+            limits.tolerance = m_most_residual;
+        }
+        limits.most_residual = m_most_residual;
+        limits.iterations = std::max(limits.iterations, most_iterations);
+    }
     limits.iterations = std::min(limits.iterations, m_max_iterations);
     limits.least_iterations = std::min(limits.least_iterations, m_max_iterations);
     return limits;
@@ -183,7 +195,7 @@ const PotentialValue* StepSolver::lower_of_guess_and_prediction(bool guess_known
 MinimiseReport StepSolver::minimise(const IterationLimits& limits, const PotentialValue* at_x) {
     if (m_settings.minimiser == MinimiserKind::newton)
         return m_newton.minimise(m_potential, m_x, at_x);
-    return m_quasi_newton.minimise(m_potential, m_x, capped(limits), at_x,
+    return m_quasi_newton.minimise(m_potential, m_x, adjusted(limits), at_x,
                                    m_deadline.earlier(m_contact_ms),
                                    m_deadline_for_more.earlier(m_contact_ms));
 }

@@ -79,6 +79,8 @@ class StepSolver {
     void set_deadline(const Deadline& deadline) { set_deadline(deadline, deadline); }
     /// Of quasi-Newton, where limits ask for more, 1 or more.
     void set_max_iterations(int most) { m_max_iterations = std::max(1, most); }
+    /// See Stepper::set_most_residual(); of quasi-Newton.
+    void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
     /// A whole step, from the start that the settings name. The arguments have passed
@@ -109,7 +111,7 @@ class StepSolver {
     const SelfContactProjection& self_contact() const { return m_self_contact; }  ///< last step's
 
  private:
-    IterationLimits capped(IterationLimits limits) const;
+    IterationLimits adjusted(IterationLimits limits) const;
     StepReport solve(const Boundary& boundary, double dt, StepStart* start,
                      const IterationLimits& limits, ClothState& state);
     void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
@@ -140,6 +142,7 @@ class StepSolver {
     SurfaceContacts m_contacts;
     Deadline m_deadline, m_deadline_for_more;
     int m_max_iterations = std::numeric_limits<int>::max();
+    double m_most_residual = std::numeric_limits<double>::infinity();
     double m_contact_ms = 0.0;  ///< what contact took in the last step
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
