@@ -52,6 +52,7 @@ void TwoWayCoupling::collect(const ClothStep& step) {
         entry.second.sides = {};
     }
     m_calmed = m_held_back = false;
+    m_floats = floatsFreely(m_body, step) && allSolidsKnown(step);
     if (step.near.empty() && m_body.m_anchors.size() == 0) {
         m_accounts.clear();
         balanceAlone(step);
@@ -70,9 +71,8 @@ void TwoWayCoupling::collect(const ClothStep& step) {
         findOwners(step);
         findImpulses(step);
     }
-    const bool floats = floatsFreely(m_body, step) && allSolidsKnown(step);
     for (auto it = m_accounts.begin(); it != m_accounts.end();) {
-        closeSides(*it->first, floats, it->second);
+        closeSides(*it->first, it->second);
         settle(step, *it->first, it->second);
         const bool done = it->second.nodes.empty() && it->second.planned.norm() < 1e-12;
         it = done ? m_accounts.erase(it) : std::next(it);
@@ -202,12 +202,12 @@ void TwoWayCoupling::chargeSide(const ClothStep& step, int node, const Vec3& imp
     ++side.count;
 }
 
-/// @param all  nothing else holds the cloth: what the cones leave is the body's, too
-void TwoWayCoupling::closeSides(const btRigidBody& body, bool all, Account& account) const {
+/// Where nothing else holds the cloth, what the cones leave is the body's, too.
+void TwoWayCoupling::closeSides(const btRigidBody& body, Account& account) const {
     for (const Side& side : account.sides) {
         if (side.count == 0) continue;
         const Vec3 given = withinFriction(body, side.normal.stableNormalized(), side.impulse);
-        account.taken.head<3>() += all ? side.impulse : given;
+        account.taken.head<3>() += m_floats ? side.impulse : given;
         account.taken.tail<3>() += (side.arm / side.count).cross(given);
     }
 }
@@ -366,7 +366,7 @@ void TwoWayCoupling::settle(const ClothStep& step, btRigidBody& body, Account& a
         if (change.head<3>().norm() > most) change *= most / change.head<3>().norm();
     }
     change.tail<3>() = limitedTurn(turning, change.tail<3>(), step.length);
-    if (account.anchored && floatsFreely(m_body, step))
+    if (account.anchored && m_floats)
         returnToCloth(step,
                       (account.taken + account.planned - mass * moved - both * change).head<3>());
     for (const Follower& follower : followers) {
@@ -422,10 +422,7 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
         momentum -= account.planned.head<3>();
     }
     const EnergyBalance::Result result =
-        m_energy.settle(step,
-                        {m_masses, m_mass_ratio, workFromOutside(step),
-                         floatsFreely(m_body, step) && allSolidsKnown(step)},
-                        shares);
+        m_energy.settle(step, {m_masses, m_mass_ratio, workFromOutside(step), m_floats}, shares);
     m_calmed = result.much && !m_accounts.empty();
     m_held_back = result.held;
     for (auto& [body, account] : m_accounts) account.gain = gainOf(*body, account.planned);
@@ -442,7 +439,7 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
         momentum += m_masses[pin] * (velocity - Vec3(step.to.v.row(pin)));
         step.to.v.row(pin) = velocity;
     }
-    if (floatsFreely(m_body, step)) returnToCloth(step, -momentum);
+    if (m_floats) returnToCloth(step, -momentum);
 }
 
 /// The pointer of a body that is gone must not be followed.

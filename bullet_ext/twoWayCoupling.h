@@ -101,7 +101,7 @@ class TwoWayCoupling {
     void moveAnchored(const ClothStep& step);
     Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
     void chargeSide(const ClothStep& step, int node, const Vec3& impulse, Account& account) const;
-    void closeSides(const btRigidBody& body, bool all, Account& account) const;
+    void closeSides(const btRigidBody& body, Account& account) const;
     bool isPinched(const ClothStep& step, int node, const NearSolid& holder) const;
     void releasePinching(const ClothStep& step);
     void findImpulses(const ClothStep& step);
@@ -130,6 +130,7 @@ class TwoWayCoupling {
     Points m_free;      ///< |V| x 3 (m/s): velocities, had nothing from outside held the cloth
     bool m_internal_known = false;
     Vec3 m_last_impulse = Vec3::Zero();
+    bool m_floats = false;  ///< nothing but bodies that can be pushed holds the cloth
     bool m_calmed = false, m_held_back = false;
 };
 

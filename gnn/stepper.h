@@ -118,9 +118,9 @@ class Stepper {
         return false;
     }
 
-    /// Steps go on from now on, beyond what its settings ask for, until StepReport::residual is at
-    /// most this (above 0; infinity: as the settings say): what pulls the cloth is known as well as
-    /// that.
+    /// Steps go on from now on, beyond what the settings ask for, until StepReport::residual is at
+    /// most this (above 0; infinity: as the settings say), or for 200 iterations: what pulls the
+    /// cloth is known as well as that.
     /// @return  false: this stepper goes on for as long as it does
     virtual bool set_most_residual(double most) {
         (void)most;

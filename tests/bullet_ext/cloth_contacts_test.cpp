@@ -252,13 +252,18 @@ TEST(ClothContacts, WhatLiesOnTheUpperSheetIsBorneByTheLowerOne) {
         ball->setActivationState(DISABLE_DEACTIVATION);
         const Whole whole{solver, {below, above}};
         int most = 0;
+        std::vector<Vec3> places;
         const auto centre = [&] { return toVec3(ball->getWorldTransform().getOrigin()); };
-        Vec3 second_before_end = Vec3::Zero();
         for (int i = 0; i < 60 * 8; ++i) {
-            if (i == 60 * 7) second_before_end = centre();
             world.step(1.0 / 60);
+            places.push_back(centre());
             most = std::max(most, whole.tangles());
         }
+        const auto mean = [&](int second) {
+            Vec3 sum = Vec3::Zero();
+            for (size_t i = 0; i < 60; ++i) sum += places[60 * size_t(second) + i];
+            return Vec3(sum / 60.0);
+        };
         EXPECT_EQ(most, 0);
         const auto nearest = [&](const btSoftBody& body) {
             const Points x = nodePositions(body);
@@ -267,7 +272,10 @@ TEST(ClothContacts, WhatLiesOnTheUpperSheetIsBorneByTheLowerOne) {
         EXPECT_NEAR(nearest(*above), 0.08, 0.01) << "the ball lies on the upper sheet";
         EXPECT_GT(nearest(*below), 0.079);
         EXPECT_GT(centre().y(), -0.4) << "the corners hold it";
-        EXPECT_LT((centre() - second_before_end).norm(), 0.01) << "it rests";
+        EXPECT_LT((centre() - places[60 * 7 - 1]).norm(), 0.01) << "it rests";
+        EXPECT_LT((mean(7) - mean(6)).norm(), 0.01);
+        for (size_t i = 60 * 7; i < places.size(); ++i)
+            EXPECT_LT((places[i] - mean(7)).norm(), 0.025) << "of step " << i;
     }
 }
 

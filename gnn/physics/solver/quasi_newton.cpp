@@ -48,6 +48,8 @@ void check(const IterationLimits& limits, const std::string& owner) {
     check_range(owner + ".least_iterations", limits.least_iterations, 0, 10000);
     check_range(owner + ".tolerance", limits.tolerance, 0.0, 1e6);
     check_range(owner + ".least_gain", limits.least_gain, 0.0, 1.0);
+    check_range(owner + ".most_residual", limits.most_residual, 0.0,
+                std::numeric_limits<double>::infinity());
 }
 
 QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)

@@ -514,6 +514,41 @@ TEST_F(Guard, PartsTakeOverWhatTheWorldHasBuilt) {
     EXPECT_GT(stepper.trees().counts().surface_fits, 1);
 }
 
+TEST(MostResidual, IsReachedUntilItIsTakenBack) {
+    Garment garment("sheet", make_sheet(0.4, 0.4, 150), Fabric::soft_cotton());
+    garment = garment.with_pins({0});
+    for (const IterationLimits& limits :
+         {IterationLimits::controlled(), IterationLimits::exactly(3)}) {
+        const auto step = [&](ClothStepper& stepper, int* iterations = nullptr) {
+            Boundary boundary;
+            ClothState state = ClothState::at_rest(garment);
+            boundary.pin_targets = state.x.topRows(1);
+            boundary.pin_targets(0, 1) += 0.01;
+            const StepReport report = stepper.step(boundary, 1.0 / 30.0, state);
+            EXPECT_TRUE(report.finite);
+            if (iterations) *iterations = report.iterations;
+            return std::pair(report.residual.value(), state.x);
+        };
+        ClothStepper stepper(garment, ClothStepperSettings::plain(limits));
+        const auto [usual, x] = step(stepper);
+        EXPECT_GT(usual, 1e-3);
+        int iterations = 0;
+        EXPECT_TRUE(stepper.set_most_residual(1e-3));
+        EXPECT_LE(step(stepper, &iterations).first, 1e-3);
+        EXPECT_LE(iterations, 200);
+        stepper.set_max_iterations(5);
+        step(stepper, &iterations);
+        EXPECT_LE(iterations, 5) << "what the user limits, stays limited";
+        stepper.set_max_iterations(std::numeric_limits<int>::max());
+        stepper.set_most_residual(std::numeric_limits<double>::infinity());
+        EXPECT_EQ(step(stepper).second, x);
+    }
+    EXPECT_FALSE(ClothStepper(garment, ClothStepperSettings::reference()).set_most_residual(1e-2));
+    IterationLimits bad;
+    bad.most_residual = -1.0;
+    EXPECT_THROW(ClothStepper(garment, ClothStepperSettings::plain(bad)), ArgumentError);
+}
+
 TEST_F(Guard, WithoutASolverItIsRefused) {
     EXPECT_THROW(ClothStepper(m_garment, std::unique_ptr<StepSolver>()), ArgumentError);
 }
