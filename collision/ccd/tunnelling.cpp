@@ -263,7 +263,8 @@ void TunnellingDetector::hold_where_they_went_in(SurfaceContacts& contacts, Poin
             continue;
         }
         const SurfaceSamples::OnFace on = m_samples.on_face(through.point - count);
-        contacts.ridges.push_back({on.face, on.weight, in.normal1, height});
+        contacts.ridges.push_back(
+            {on.face, on.weight, in.normal1, height, in.normal0, in.point0, in.point1});
         const SurfaceSamples::Corners corners = m_samples.corners(through.point - count);
         const double depth = height - corners.position(x).dot(in.normal1);
         for (int k = 0; k < corners.count(); ++k)

@@ -17,6 +17,8 @@ struct RidgeContact {
     std::array<double, 3> weight;  ///< of the face's corners, 0 to 1
     Vec3 normal;                   ///< unit, outward
     double height = 0.0;           ///< of the plane: surface point . normal (m)
+    Vec3 normal0 = Vec3::Zero();   ///< at t
+    Vec3 point0 = Vec3::Zero(), point1 = Vec3::Zero();  ///< the surface point at t, t + dt (m)
 };
 
 /// Nearest surface points of a set of query points, one row each. The closest point is chosen on

@@ -152,6 +152,9 @@ RidgeContact RidgeFinder::ridge(int row, StepEnd chosen_at) const {
     ridge.normal = chosen_at == StepEnd::start ? carried_direction(m_near, row, m_x)
                                                : outward(m_near, row, m_x);
     ridge.height = ridge.normal.dot(m_near.point1.row(row).transpose());
+    ridge.normal0 = turned(ridge.normal, m_near.normal1.row(row), m_near.normal0.row(row));
+    ridge.point0 = m_near.point0.row(row);
+    ridge.point1 = m_near.point1.row(row);
     return ridge;
 }
 

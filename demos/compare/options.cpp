@@ -42,7 +42,8 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         ->type_name("soft|real");
     add_list(app, "--solvers", options.solvers,
              "bullet, bullet-fine, bullet-K (K iterations), reference,\n"
-             "quasi-newton, quasi-newton-K (K iterations), xpbd-N (N\n"
+             "quasi-newton, quasi-newton-K (K iterations),\n"
+             "quasi-newton-KsS (S small steps of K iterations), xpbd-N (N\n"
              "substeps), skinning, skinning-raw (the garment's own\n"
              "network, if it has one), and networks: small, fast, baseline, sampling,\n"
              "reduction, as shipped (10 refinement iterations or more,\n"

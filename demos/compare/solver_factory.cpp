@@ -86,15 +86,25 @@ std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& sc
 
 std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {
     ClothStepperSettings settings;
-    set_scene(name, scene, settings);
+    const Integrator integrator = take_integrator(name);
+    const std::string prefix = "quasi-newton-";
     if (name != "quasi-newton") {
-        const size_t cross = name.find('x');
-        const std::string first = name.substr(0, cross);
-        settings.step.quasi_newton =
-            IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000));
-        settings.guard.max_substeps = 1;
-        if (cross != std::string::npos) settings.substeps = iterations_of(name, first + "x", 1, 64);
+        const size_t mark = name.find_first_of("xs", prefix.size());
+        const std::string first = name.substr(0, mark);
+        const int iterations = iterations_of(first, prefix, 0, 1000);
+        const bool small = mark != std::string::npos && name[mark] == 's';
+        if (small) {
+            settings.step =
+                StepSettings::in_small_steps(iterations_of(name, first + "s", 1, 64), iterations);
+        } else {
+            settings.step.quasi_newton = IterationLimits::exactly(iterations);
+            settings.guard.max_substeps = 1;
+            if (mark != std::string::npos)
+                settings.substeps = iterations_of(name, first + "x", 1, 64);
+        }
     }
+    set_scene(name, scene, settings);
+    settings.step.potential.integrator = integrator;
     return std::make_unique<ClothStepper>(scene.garment(), settings);
 }
 
@@ -213,8 +223,8 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton, quasi-newton-K, quasi-newton-KxS, xpbd-N, skinning, skinning-raw or a "
-        "network of " +
+        "quasi-newton, quasi-newton-K, quasi-newton-KsS, quasi-newton-KxS, xpbd-N, skinning, "
+        "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
 }

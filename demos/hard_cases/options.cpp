@@ -31,8 +31,9 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
                  "through limbs that are inside other limbs (with limbs, depth is\n"
                  "that inside the others)");
     add_list(app, "--steppers", options.steppers,
-             "reference, newton-K, quasi-newton-K, quasi-newton-KxS, xpbd-N,\n"
-             "bullet, bullet-fine, bullet-KxS, or a network NAME[+K]");
+             "reference, newton-K, quasi-newton-K, quasi-newton-KsS,\n"
+             "quasi-newton-KxS, xpbd-N, bullet, bullet-fine, bullet-KxS,\n"
+             "or a network NAME[+K]");
     app.add_option("--frames-scale", options.frames_scale,
                    "runs S times the frames of each case, 0.001 to 1000 (default 1);\n"
                    "the bounds on its end count only if it runs in full")

@@ -70,6 +70,7 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
     add_list(app, "--solvers", options.solvers,
              "bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
              "sub-steps), quasi-newton-K, newton-K (K iterations),\n"
+             "quasi-newton-KsS (S small steps of K iterations),\n"
              "quasi-newton, NAME (a network; both as shipped), reference,\n"
              "NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
              "instead of the engine), bf16-NAME+K (products in bfloat16),\n"
@@ -105,6 +106,8 @@ std::vector<std::string> default_solvers(const std::vector<std::string>& network
         solvers.push_back(std::string("xpbd-") + substeps);
     for (const char* setting : {"-1", "-3", "-10", "", "-30", "-3-bdf2", "-10-bdf2", "-bdf2"})
         solvers.push_back(std::string("quasi-newton") + setting);
+    for (const char* setting : {"2s2", "2s4", "3s4", "5s4", "3s4-bdf2"})
+        solvers.push_back(std::string("quasi-newton-") + setting);
     for (const char* solver : {"newton-1", "newton-3", "newton-10", "reference"})
         solvers.push_back(solver);
     for (const std::string& network : networks) {

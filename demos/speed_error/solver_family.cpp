@@ -5,6 +5,8 @@ namespace {
 
 using Kind = SolverFamily::Kind;
 
+constexpr size_t npos = std::string::npos;
+
 /// What follows `prefix` in `name`; nothing if it does not begin so.
 std::optional<std::string> after(const std::string& name, const std::string& prefix) {
     if (name.rfind(prefix, 0) != 0) return std::nullopt;
@@ -78,6 +80,8 @@ SolverFamily solver_family(std::string solver) {
         return {Kind::xpbd, "XPBD", *setting, "sub-steps"};
     if (solver == "quasi-newton")
         return {Kind::quasi_newton, "quasi-Newton", "shipped", "iterations"};
+    if (const auto setting = after(solver, "quasi-newton-"); setting && setting->find('s') < npos)
+        return {Kind::quasi_newton, "quasi-Newton, small steps", *setting, "iterations, steps"};
     if (const auto setting = after(solver, "quasi-newton-"))
         return {Kind::quasi_newton, "quasi-Newton", *setting, "iterations"};
     if (const auto setting = after(solver, "newton-"))

@@ -31,8 +31,8 @@ SolverChoice SolverChoice::of(const std::string& name) {
 }
 
 std::vector<std::string> solver_kinds() {
-    std::vector<std::string> kinds = {"quasi-newton", "quasi-newton-K", "quasi-newton-bdf2",
-                                      "xpbd-N"};
+    std::vector<std::string> kinds = {"quasi-newton", "quasi-newton-K", "quasi-newton-3s4",
+                                      "quasi-newton-bdf2", "xpbd-N"};
     for (const std::string& network : networks_in("")) {
         kinds.push_back(network);
         kinds.push_back(network + "+K");

@@ -118,9 +118,11 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
     if (!m_matrix.fits(garment) || x.rows() != garment.vertex_count() || !x.allFinite())
         return false;
     if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
-    m_history.clear();
+    if (!m_continued) m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
-    if (m_settings.contact_cg_iterations > 0 && m_contacts.active()) m_matrix.deflate(x);
+    if (m_settings.contact_cg_iterations > 0 && m_contacts.active() &&
+        !(m_continued && m_matrix.is_deflated()))
+        m_matrix.deflate(x);
     if (at_x) {
         report.energy = at_x->energy;
         m_matrix.gather(at_x->gradient, m_gradient);

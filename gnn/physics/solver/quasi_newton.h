@@ -106,6 +106,10 @@ class QuasiNewton {
     /// first.
     void precondition(const Points& gradient, Points& out) const;
 
+    /// Whether minimisations go on with the history and the deflated fields of the one before,
+    /// which suit a step of the same length that follows it at once. By default they do not.
+    void set_continued(bool continued) { m_continued = continued; }
+
     const QuasiNewtonMatrix& matrix() const { return m_matrix; }
 
  private:
@@ -120,6 +124,7 @@ class QuasiNewton {
     QuasiNewtonMatrix m_matrix;
     ContactHessian m_contacts;
     LbfgsHistory m_history;
+    bool m_continued = false;
     Points m_all_gradient, m_trial;                                 ///< |V| x 3
     Points m_gradient, m_next_gradient, m_direction, m_right_side;  ///< free vertices (n x 3)
     mutable Points m_gathered, m_preconditioned;                    ///< n x 3

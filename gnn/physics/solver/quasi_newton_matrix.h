@@ -49,6 +49,7 @@ class QuasiNewtonMatrix {
     /// Until the next `prepare`, solves with contact blocks find the affine displacements of the
     /// vertices at x (|V| x 3, m) directly.
     void deflate(const Points& x);
+    bool is_deflated() const { return m_deflated; }  ///< for this P, around some x
 
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
     /// preconditioned by P, of soft fabrics in single precision, to which the answer is exact. They

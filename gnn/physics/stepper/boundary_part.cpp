@@ -50,9 +50,10 @@ void cut(const SkinGoals& whole, double s0, double s1, SkinGoals& part) {
 }  // namespace
 
 void BoundaryPart::begin(const Garment& garment, const ClothState& state, const Boundary& boundary,
-                         int count) {
+                         int count, Surfaces surfaces) {
     m_whole = &boundary;
     m_count = count;
+    m_surfaces = surfaces;
     m_has_goals = garment.has_goals();
     m_part.gravity = boundary.gravity;
     m_part.accelerations = boundary.accelerations;
@@ -67,7 +68,10 @@ const Boundary& BoundaryPart::take(int k) {
     const double s0 = static_cast<double>(k) / m_count;
     const double s1 = static_cast<double>(k + 1) / m_count;
     for (size_t i = 0; i < m_part.obstacles.size(); ++i)
-        cut(m_whole->obstacles[i], s0, s1, m_part.obstacles[i]);
+        if (m_surfaces == Surfaces::moved)
+            cut(m_whole->obstacles[i], s0, s1, m_part.obstacles[i]);
+        else
+            m_part.obstacles[i].friction = m_whole->obstacles[i].friction;
     if (m_has_goals) cut(m_whole->goals, s0, s1, m_part.goals);
     m_part.pin_targets = k + 1 == m_count
                              ? m_whole->pin_targets

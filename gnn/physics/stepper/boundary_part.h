@@ -14,10 +14,13 @@ namespace cloth {
 ///     for (int k = 0; k < 4; ++k) { ... part.take(k) ... }
 class BoundaryPart {
  public:
+    /// Of obstacles: all, or no surfaces, for whom contacts are enough.
+    enum class Surfaces { moved, left_out };
+
     /// Keeps a reference to `boundary` until the last part is taken.
     /// @param state  at t: where the pins are
-    void begin(const Garment& garment, const ClothState& state, const Boundary& boundary,
-               int count);
+    void begin(const Garment& garment, const ClothState& state, const Boundary& boundary, int count,
+               Surfaces surfaces = Surfaces::moved);
 
     /// Part k, 0 to count - 1; valid until the next call.
     const Boundary& take(int k);
@@ -25,6 +28,7 @@ class BoundaryPart {
  private:
     const Boundary* m_whole = nullptr;
     int m_count = 1;
+    Surfaces m_surfaces = Surfaces::moved;
     bool m_has_goals = false;
     Boundary m_part;
     Points m_pins_before;  ///< |pins| x 3 (m)

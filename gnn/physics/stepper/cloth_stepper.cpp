@@ -87,6 +87,11 @@ ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> s
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);
     check_range("ClothStepperSettings.substeps", substeps, 1, 64);
+    if (substeps > 1 && m_solver->settings().small_steps > 1)
+        throw ArgumentError("ClothStepperSettings.substeps",
+                            "is " + std::to_string(substeps) + ", and StepSettings.small_steps " +
+                                std::to_string(m_solver->settings().small_steps),
+                            "set one of them to 1");
     if (fixed_dt() > 0.0) prepare(fixed_dt());
 }
 
@@ -96,6 +101,7 @@ std::string ClothStepper::name() const {
 
 void ClothStepper::prepare(double dt) {
     m_solver->prepare(dt / m_substeps);
+    m_solver->prepare(dt / m_solver->settings().small_steps);
     for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2)
         m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
 }
@@ -147,6 +153,7 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
     const int foreseen = affordable(safe, m_substeps);
     const bool may_repeat = foreseen < m_guard.max_substeps;
     if (may_repeat) m_before = state;
+    const bool goes_on = same_points(m_lag.x, state.x);
     StepReport report = foreseen == 1
                             ? take_whole(boundary, dt, motion, state)
                             : take_parts(foreseen, boundary, dt, Corrections::allowed, state);
@@ -164,7 +171,10 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
         }
     }  // better the first step than none
     report.out_of_time = report.out_of_time || shortened;
-    if (report.finite && report.substeps > 1) std::swap(m_lag, lag);
+    if (report.finite && lag.parts > 1) {
+        if (goes_on) std::swap(m_lag_before, m_lag);
+        std::swap(m_lag, lag);
+    }
     return report;
 }
 
@@ -178,8 +188,9 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
     if (is_watched()) m_start = state;
-    StepReport report = is_made_for(dt) ? m_solver->whole(boundary, dt, state)
-                                        : m_solver->part(boundary, dt, m_guard.iterations, state);
+    StepReport report = m_solver->prefers_small_steps(state) ? take_small_steps(boundary, dt, state)
+                        : is_made_for(dt)                    ? m_solver->whole(boundary, dt, state)
+                                          : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_start.x, state.x, report);
     if (should_search && !search_it) {
         report.out_of_time = true;
@@ -190,6 +201,18 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
         m_solver->set_deadline(m_deadline.earlier(m_search_ms));
         correct(boundary, dt, m_guard.iterations, search_it, state, report);
     }
+    return report;
+}
+
+StepReport ClothStepper::take_small_steps(const Boundary& boundary, double dt, ClothState& state) {
+    const int count = m_solver->settings().small_steps;
+    m_state.v = state.v;
+    add_lag(count, state);
+    const StepReport report = m_solver->in_small_steps(boundary, dt, state);
+    if (report.finite)
+        keep_lag(count, m_solver->end_velocity(), state);
+    else
+        state.v = m_state.v;
     return report;
 }
 
@@ -204,7 +227,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     report.converged = true;
     report.substeps = substeps;
     m_state = state;
-    if (m_lag.substeps == substeps && same_points(m_lag.x, state.x)) m_state.v += m_lag.v;
+    add_lag(substeps, m_state);
     // What is cut because the settings say so obeys the settings' limits.
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
@@ -225,13 +248,28 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
         m_part_ms += least_ms(part, limits) / substeps;
     }
     m_state.time = state.time + dt;
-    m_next_lag.substeps = substeps;
-    m_next_lag.x = m_state.x;
     m_next_lag.v = m_state.v;
     m_state.v = (m_state.x - state.x) / dt;
-    m_next_lag.v -= m_state.v;
+    keep_lag(substeps, m_next_lag.v, m_state);
     std::swap(state, m_state);
     return report;
+}
+
+/// Of a constant acceleration a, the last of N parts ends faster than the mean by
+/// (N - 1) / 2N a dt; so a step of N parts may follow one of another number.
+void ClothStepper::add_lag(int parts, ClothState& state) const {
+    const auto share = [](int count) { return static_cast<double>(count - 1) / count; };
+    for (const Lag* lag : {&m_lag, &m_lag_before})
+        if (parts > 1 && lag->parts > 1 && same_points(lag->x, state.x)) {
+            state.v += share(parts) / share(lag->parts) * lag->v;
+            return;
+        }
+}
+
+void ClothStepper::keep_lag(int parts, const Points& end_velocity, const ClothState& state) {
+    m_next_lag.parts = parts;
+    m_next_lag.x = state.x;
+    m_next_lag.v = end_velocity - state.v;
 }
 
 /// Advances m_state.
@@ -269,6 +307,7 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     corrected.out_of_time = corrected.out_of_time || report.out_of_time;
     report = corrected;
     std::swap(state, m_corrected);
+    m_next_lag.x = state.x;  // that of the parts that were corrected, if there were any
 }
 
 void ClothStepper::search(const Boundary& boundary, const Points& x0, const Points& x1,

@@ -53,7 +53,8 @@ struct GuardSettings {
 struct ClothStepperSettings {
     StepSettings step;
     int substeps = 1;  ///< equal parts of every step at least, 1 to 64: smaller steps damp less and
-                       ///< are nearer to the equations of motion. Parts do not use the start
+                       ///< are nearer to the equations of motion. Parts do not use the start, are
+                       ///< whole steps of their own, and so dearer than StepSettings::small_steps
     GuardSettings guard;
     double max_ms = std::numeric_limits<double>::infinity();  ///< see ClothStepper::set_max_ms(),
                                                               ///< 0.1 to infinity
@@ -87,10 +88,10 @@ struct ClothStepperSettings {
 ///
 /// make_cloth() (gnn/model/make_cloth.h) also takes a network.
 ///
-/// ClothState has the mean velocity over a step; the velocity at the end of the last part, from
-/// which the next step goes on, differs from it by a lag. A state whose positions are those that
-/// were returned last, by a step of as many parts, goes on with its velocity (which others may have
-/// changed) and that lag, any other state with its velocity alone.
+/// ClothState has the mean velocity over a step; the velocity at the end of the last part, or small
+/// step, from which the next step goes on, differs from it by a lag. A state whose positions are
+/// those that were returned last, or those from which that step began, goes on with its velocity
+/// (which others may have changed) and their lag, any other state with its velocity alone.
 class ClothStepper : public Stepper {
  public:
     /// Keeps a reference to `garment`.
@@ -138,7 +139,7 @@ class ClothStepper : public Stepper {
                  const GuardSettings& guard, int substeps, std::shared_ptr<ObstacleTrees> trees);
 
     struct Lag {
-        int substeps = 0;
+        int parts = 0;
         Points x;  ///< |V| x 3 (m): what was returned last
         Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
@@ -146,10 +147,13 @@ class ClothStepper : public Stepper {
     enum class Corrections { none, allowed };  ///< of parts of a step
 
     bool is_made_for(double dt) const;
+    void add_lag(int parts, ClothState& state) const;
+    void keep_lag(int parts, const Points& end_velocity, const ClothState& state);
     int affordable(int substeps, int least) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
+    StepReport take_small_steps(const Boundary& boundary, double dt, ClothState& state);
     StepReport take_parts(int substeps, const Boundary& boundary, double dt,
                           Corrections corrections, ClothState& state);
     StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits,
@@ -176,7 +180,9 @@ class ClothStepper : public Stepper {
     ClothState m_state;   ///< during a step of parts
     ClothState m_start;   ///< of a step, or part of one, that may be corrected
     ClothState m_corrected;
-    Lag m_lag, m_next_lag;  ///< of the last step; of the one that is being taken
+    /// At the end of the last step, where it began, and at the end of the one that is being taken:
+    /// a step may be taken again from where it began.
+    Lag m_lag, m_lag_before, m_next_lag;
     double m_max_ms = std::numeric_limits<double>::infinity();
     Deadline m_deadline;       ///< of this step
     double m_part_ms = 0.0;    ///< what a part takes at least, as the last ones did

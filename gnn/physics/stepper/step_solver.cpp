@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "data/core/check_range.h"
+#include "data/core/errors.h"
 #include "gnn/physics/stepper/guess.h"
 #include "gnn/physics/stepper/stopwatch.h"
 
@@ -12,10 +13,14 @@ namespace cloth {
 namespace {
 
 constexpr int most_iterations = 200;  // towards a residual that is asked for
+// What moves no faster is at rest, or soon will be: few iterations in small steps would leave it
+// trembling, as many in one step do not.
+constexpr double rest_speed = 0.1;  // m/s
 
 const StepSettings& checked(const StepSettings& settings) {
     check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
+    check_range("StepSettings.small_steps", settings.small_steps, 1, 64);
     return settings;
 }
 
@@ -46,6 +51,11 @@ StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
       m_projection(garment),
       m_goals(garment),
       m_self_contact(garment, settings.potential.self_contact) {
+    if (m_start && settings.small_steps > 1)
+        throw ArgumentError("StepSettings.small_steps",
+                            "is " + std::to_string(settings.small_steps) +
+                                ", but a start (a network) is of a whole step",
+                            "set it to 1, or use no network");
 }
 
 std::string StepSolver::name() const {
@@ -54,6 +64,7 @@ std::string StepSolver::name() const {
     const IterationLimits& limits = m_settings.quasi_newton;
     std::string name = "quasi-newton";
     if (limits.tolerance == 0.0) name += suffix_of(limits, '-');
+    if (m_settings.small_steps > 1) name += "s" + std::to_string(m_settings.small_steps);
     if (m_settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
     return name;
 }
@@ -76,33 +87,43 @@ IterationLimits StepSolver::adjusted(IterationLimits limits) const {
         limits.most_residual = m_most_residual;
         limits.iterations = std::max(limits.iterations, most_iterations);
     }
-    limits.iterations = std::min(limits.iterations, m_max_iterations);
-    limits.least_iterations = std::min(limits.least_iterations, m_max_iterations);
+    const int most = std::max(1, m_max_iterations / m_parts);
+    limits.iterations = std::min(limits.iterations, most);
+    limits.least_iterations = std::min(limits.least_iterations, most);
     return limits;
 }
 
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
-    return solve(boundary, dt, m_start.get(), m_settings.quasi_newton, state);
+    IterationLimits limits = m_settings.quasi_newton;
+    limits.iterations *= m_settings.small_steps;
+    limits.least_iterations *= m_settings.small_steps;
+    return solve(boundary, dt, m_start.get(), limits, 1, state);
+}
+
+StepReport StepSolver::in_small_steps(const Boundary& boundary, double dt, ClothState& state) {
+    return solve(boundary, dt, nullptr, m_settings.quasi_newton, m_settings.small_steps, state);
+}
+
+bool StepSolver::prefers_small_steps(const ClothState& state) const {
+    return m_settings.small_steps > 1 && m_settings.minimiser == MinimiserKind::quasi_newton &&
+           state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
 }
 
 StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
                             ClothState& state) {
-    return solve(boundary, dt, nullptr, limits, state);
+    return solve(boundary, dt, nullptr, limits, 1, state);
 }
 
 StepReport StepSolver::solve(const Boundary& boundary, double dt, StepStart* start,
-                             const IterationLimits& limits, ClothState& state) {
+                             const IterationLimits& limits, int parts, ClothState& state) {
     StepReport report;
     Stopwatch watch;
     for (int round = 0; round <= m_settings.contact_updates; ++round) {
         const bool first = round == 0;
         find_contacts(boundary, first ? state.x : m_x, first ? StepEnd::start : StepEnd::end);
         report.times.proximity += watch.lap();
-        begin(boundary, dt, state);
-        const PotentialValue* at_x =
-            first ? choose_start(boundary, start, limits, dt, state, report) : nullptr;
-        const bool as_predicted = start && limits.iterations == 0 && !at_x;
-        if (!as_predicted && !descend(boundary, limits, at_x, state, report))
+        const Start from = first ? Start::guess : Start::here;
+        if (!run(boundary, dt, first ? start : nullptr, from, limits, parts, state, report))
             return StepReport::failed();
         report.times.solve += watch.lap();
         if (boundary.obstacles.empty() || report.out_of_time) break;
@@ -120,16 +141,76 @@ StepReport StepSolver::correct(const Boundary& boundary, double dt,
     find_contacts(boundary, m_x, StepEnd::end);
     if (through) through->hold_where_they_went_in(m_contacts, m_x);
     report.times.proximity = watch.lap();
-    begin(boundary, dt, state);
-    if (!descend(boundary, limits, nullptr, state, report)) return StepReport::failed();
+    if (!run(boundary, dt, nullptr, Start::here, limits, 1, state, report))
+        return StepReport::failed();
     report.times.solve = watch.lap();
     return finish(boundary, dt, state, report);
+}
+
+/// Minimises a step in so many parts, from the guess or from m_x, with m_contacts. Leaves the end
+/// in m_x and m_last, the state before the last part.
+bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Start from,
+                     const IterationLimits& limits, int parts, const ClothState& state,
+                     StepReport& report) {
+    m_last = state;
+    m_last_dt = dt / parts;
+    m_parts = parts;
+    const std::vector<Tangle>* const tangles = m_self_contact.tangles_at(state.x);
+    if (parts == 1) {
+        begin(boundary, m_contacts, dt, tangles);
+        return minimise_part(boundary, m_contacts, start, from, limits, report);
+    }
+    const Deadline deadline = m_deadline, for_more = m_deadline_for_more;
+    m_boundary_part.begin(*m_garment, state, boundary, parts, BoundaryPart::Surfaces::left_out);
+    m_contact_part.begin(m_contacts, parts);
+    bool finite = true;
+    for (int k = 0; k < parts && finite; ++k) {
+        if (k > 0) accept_part();
+        const Boundary& part = m_boundary_part.take(k);
+        const SurfaceContacts& contacts = m_contact_part.take(k, m_last.x);
+        share(deadline, parts - k, m_deadline);
+        share(for_more, parts - k, m_deadline_for_more);
+        begin(part, contacts, m_last_dt, tangles);
+        m_quasi_newton.set_continued(k > 0);
+        finite = minimise_part(part, contacts, nullptr, Start::guess, limits, report);
+    }
+    m_quasi_newton.set_continued(false);
+    m_deadline = deadline;
+    m_deadline_for_more = for_more;
+    return finite;
+}
+
+/// A part's share of the time that is left, for so many of them and contact projection.
+void StepSolver::share(const Deadline& whole, int parts, Deadline& part) const {
+    if (whole.is_set())
+        part = Deadline::in(m_contact_ms + whole.earlier(m_contact_ms).left() / parts);
+}
+
+/// From m_last, with m_potential begun.
+bool StepSolver::minimise_part(const Boundary& boundary, const SurfaceContacts& contacts,
+                               StepStart* start, Start from, const IterationLimits& limits,
+                               StepReport& report) {
+    const PotentialValue* at_x = nullptr;
+    if (from == Start::guess)
+        at_x = choose_start(boundary, contacts, start, limits, m_last_dt, m_last, report);
+    if (start && limits.iterations == 0 && !at_x) return true;  // as it was predicted
+    return descend(boundary, limits, at_x, m_last, report);
+}
+
+/// m_last goes on to m_x.
+void StepSolver::accept_part() {
+    m_v = (m_x - m_last.x) / m_last_dt;
+    m_time.end_step(m_last, m_x, m_v, m_last_dt);
+    m_potential.friction().remember(m_x, m_last.stick);
+    m_last.x = m_x;
+    m_last.v = m_v;
 }
 
 /// Contact projection of m_x, which becomes the state.
 StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& state,
                               StepReport report) {
     Stopwatch watch;
+    m_v = m_x;
     project(boundary, state, report);
     m_contact_ms = report.times.contact = watch.lap();
     if (!accept(dt, state)) return StepReport::failed();
@@ -149,18 +230,20 @@ void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEn
     m_ridges.find(m_proximity, boundary, x, m_contacts, end);
 }
 
-void StepSolver::begin(const Boundary& boundary, double dt, const ClothState& state) {
+/// From m_last on.
+void StepSolver::begin(const Boundary& boundary, const SurfaceContacts& contacts, double dt,
+                       const std::vector<Tangle>* tangles) {
     const InertialStep* inertia =
-        m_time.begin_step(state, m_contacts, m_potential.settings().contact_distance, dt);
-    m_potential.begin_step(state, boundary, m_contacts, dt, inertia,
-                           m_self_contact.tangles_at(state.x));
+        m_time.begin_step(m_last, contacts, m_potential.settings().contact_distance, dt);
+    m_potential.begin_step(m_last, boundary, contacts, dt, inertia, tangles);
 }
 
 /// Leaves where to start in m_x; returns E and its gradient there if they are known.
-const PotentialValue* StepSolver::choose_start(const Boundary& boundary, StepStart* start,
+const PotentialValue* StepSolver::choose_start(const Boundary& boundary,
+                                               const SurfaceContacts& contacts, StepStart* start,
                                                const IterationLimits& limits, double dt,
                                                const ClothState& state, StepReport& report) {
-    starting_guess(*m_garment, state, boundary, m_contacts, dt,
+    starting_guess(*m_garment, state, boundary, contacts, dt,
                    m_potential.settings().contact_distance, m_guess);
     m_potential.separate_self_contact(m_guess);
     m_x = m_guess;
@@ -232,14 +315,32 @@ void StepSolver::project(const Boundary& boundary, const ClothState& state, Step
     report.max_goal_excess = m_goals.last().max_excess;
 }
 
+/// m_x after contact projection becomes the state; m_v, m_x before it, the velocity at its end.
 bool StepSolver::accept(double dt, ClothState& state) {
-    m_v = (m_x - state.x) / dt;
+    end_velocities(dt, state);
     if (!m_x.allFinite() || !m_v.allFinite()) return false;  // very short steps overflow
-    m_time.end_step(state, m_x, m_v, dt);
+    m_time.end_step(m_last, m_x, m_v, m_last_dt);
+    state.v = (m_x - state.x) / dt;
     state.x = m_x;
-    state.v = m_v;
     state.time += dt;
     return true;
+}
+
+/// The projection of a whole step says little of velocities at the end of its last part: what it
+/// moved keeps its own, but for what leads into the surface.
+void StepSolver::end_velocities(double dt, const ClothState& state) {
+    if (m_parts == 1) {
+        m_v = (m_x - state.x) / dt;
+        return;
+    }
+    for (Eigen::Index i = 0; i < m_x.rows(); ++i) {
+        const bool moved = m_x.row(i) != m_v.row(i);
+        m_v.row(i) = (m_v.row(i) - m_last.x.row(i)) / m_last_dt;
+        if (!moved || m_contacts.obstacle.empty() || !m_contacts.has(i)) continue;
+        const Vec3 normal = m_contacts.normal1.row(i);
+        const double inward = normal.dot(m_v.row(i).transpose() - m_contacts.velocity(i, dt));
+        if (inward < 0.0) m_v.row(i) -= inward * normal.transpose();
+    }
 }
 
 }  // namespace cloth

@@ -12,6 +12,8 @@
 #include "gnn/physics/energy/time_integration.h"
 #include "gnn/physics/solver/newton.h"
 #include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/boundary_part.h"
+#include "gnn/physics/stepper/contact_part.h"
 #include "gnn/physics/stepper/self_contact_projection.h"
 #include "gnn/physics/stepper/step_start.h"
 
@@ -30,9 +32,26 @@ struct StepSettings {
     /// goes on with them, 0 to 10. 0 keeps those that were nearest at t; more follow cloth that
     /// slides past the end of a face.
     int contact_updates = 0;
+    /// Parts of equal length in which a whole step is minimised, one after the other, 1 to 64, with
+    /// the iterations of `quasi_newton` each. All have the contacts of the step, which move along,
+    /// and one contact projection follows the last. Small steps damp less, are nearer to the
+    /// equations of motion, and need fewer iterations. Cloth that hardly moves takes one step with
+    /// the iterations of all instead, so that it comes to rest. Not with a start, which is of a
+    /// whole step.
+    int small_steps = 1;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.
     double safety_distance = 5e-4;
+
+    /// Few iterations in each of some small steps: as near to the equations of motion as many in
+    /// one, in less time, and in nearly the same time in every step.
+    static StepSettings in_small_steps(int count = 4, int iterations = 3) {
+        StepSettings settings;
+        settings.small_steps = count;
+        settings.quasi_newton = IterationLimits::exactly(iterations);
+        settings.quasi_newton.contact_cg_iterations = 5;
+        return settings;
+    }
 };
 
 /// One implicit step of a garment: nearest surface points, incremental potential, a start
@@ -50,15 +69,16 @@ class StepSolver {
     /// Keeps a reference to `garment`.
     /// @param start  of whole steps; null: the guess
     /// @param trees  of the obstacles where Boundary::trees is null; null: its own
-    /// @throws ArgumentError if a setting is out of range
+    /// @throws ArgumentError if a setting is out of range, or with a start and small steps
     StepSolver(const Garment& garment, const StepSettings& settings,
                std::shared_ptr<StepStart> start = nullptr,
                std::shared_ptr<ObstacleTrees> trees = nullptr);
     virtual ~StepSolver() = default;
 
     /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with
-    /// "-bdf2" at the end if that integrates; "reference" of Newton's method; with a start its
-    /// name, and "+K" with exactly K iterations, "+1e-02" with a tolerance.
+    /// "sS" for S small steps, and with "-bdf2" at the end if that integrates; "reference" of
+    /// Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with a
+    /// tolerance.
     std::string name() const;
     double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
     const StepSettings& settings() const { return m_settings; }
@@ -77,15 +97,23 @@ class StepSolver {
         m_deadline_for_more = for_more;
     }
     void set_deadline(const Deadline& deadline) { set_deadline(deadline, deadline); }
-    /// Of quasi-Newton, where limits ask for more, 1 or more.
+    /// Of quasi-Newton, where limits ask for more, 1 or more; a small step takes one at least.
     void set_max_iterations(int most) { m_max_iterations = std::max(1, most); }
     /// See Stepper::set_most_residual(); of quasi-Newton.
     void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
-    /// A whole step, from the start that the settings name. The arguments have passed
-    /// is_valid_step(); a step that fails leaves the state as it was.
+    /// A whole step, from the start that the settings name, with the iterations of all small steps.
+    /// The arguments have passed is_valid_step(); a step that fails leaves the state as it was.
     virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
+
+    /// The same in the small steps of the settings, without the start. The state has the mean
+    /// velocity of the step afterwards; the next one should go on from end_velocity().
+    StepReport in_small_steps(const Boundary& boundary, double dt, ClothState& state);
+    /// Whether a step from this state should be taken so.
+    bool prefers_small_steps(const ClothState& state) const;
+    /// Of the last step, at its end (|V| x 3, m/s).
+    const Points& end_velocity() const { return m_v; }
 
     /// A part of a step that was cut, from the guess. Newton's method keeps its own limits.
     virtual StepReport part(const Boundary& boundary, double dt, const IterationLimits& limits,
@@ -112,12 +140,20 @@ class StepSolver {
 
  private:
     IterationLimits adjusted(IterationLimits limits) const;
+    enum class Start { guess, here };  ///< here: m_x
     StepReport solve(const Boundary& boundary, double dt, StepStart* start,
-                     const IterationLimits& limits, ClothState& state);
+                     const IterationLimits& limits, int parts, ClothState& state);
     void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
-    void begin(const Boundary& boundary, double dt, const ClothState& state);
-    const PotentialValue* choose_start(const Boundary& boundary, StepStart* start,
-                                       const IterationLimits& limits, double dt,
+    bool run(const Boundary& boundary, double dt, StepStart* start, Start from,
+             const IterationLimits& limits, int parts, const ClothState& state, StepReport& report);
+    void share(const Deadline& whole, int parts, Deadline& part) const;
+    void begin(const Boundary& boundary, const SurfaceContacts& contacts, double dt,
+               const std::vector<Tangle>* tangles);
+    bool minimise_part(const Boundary& boundary, const SurfaceContacts& contacts, StepStart* start,
+                       Start from, const IterationLimits& limits, StepReport& report);
+    void accept_part();
+    const PotentialValue* choose_start(const Boundary& boundary, const SurfaceContacts& contacts,
+                                       StepStart* start, const IterationLimits& limits, double dt,
                                        const ClothState& state, StepReport& report);
     const PotentialValue* lower_of_guess_and_prediction(bool guess_known, StepReport& report);
     MinimiseReport minimise(const IterationLimits& limits, const PotentialValue* at_x);
@@ -126,6 +162,7 @@ class StepSolver {
     void project(const Boundary& boundary, const ClothState& state, StepReport& report);
     StepReport finish(const Boundary& boundary, double dt, ClothState& state, StepReport report);
     bool accept(double dt, ClothState& state);
+    void end_velocities(double dt, const ClothState& state);
 
     const Garment* m_garment;
     StepSettings m_settings;
@@ -147,6 +184,11 @@ class StepSolver {
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
+    BoundaryPart m_boundary_part;
+    ContactPart m_contact_part;
+    ClothState m_last;       ///< from which the last part began
+    double m_last_dt = 0.0;  ///< its length (s)
+    int m_parts = 1;         ///< of the last step
 };
 
 }  // namespace cloth

@@ -229,6 +229,8 @@ TEST(Tunnelling, BetweenVerticesAreHeldByContactsOfTheirOwn) {
                      held.row(garment.rest().faces(ridge.face, k)).transpose();
         EXPECT_GT(ridge.normal.y(), 0.5);
         EXPECT_GT(ridge.normal.dot(point) - ridge.height, -1e-9);
+        EXPECT_NEAR(ridge.normal.dot(ridge.point1), ridge.height, 1e-12);
+        EXPECT_LT((ridge.point1 - ridge.point0 - Vec3(0, 0.06, 0)).norm(), 1e-9);
     }
 }
 

@@ -109,6 +109,10 @@ TEST(RidgeFinder, PlanesRideWithTheObstacle) {
         EXPECT_NEAR(moved[k].normal.dot(p) - moved[k].height,
                     still[k].normal.dot(strip.point(still[k])) - still[k].height, 2e-4)
             << "the shortest rotation leaves the twist out";
+        EXPECT_LT((moved[k].point0 - still[k].point0).norm(), 1e-12);
+        EXPECT_LT((moved[k].point1 - motion * still[k].point1).norm(), 1e-12);
+        EXPECT_LT((moved[k].normal0 - still[k].normal).norm(), 1e-9) << "as it is at the start";
+        EXPECT_NEAR(moved[k].normal.dot(moved[k].point1), moved[k].height, 1e-12);
     }
 }
 

@@ -41,7 +41,7 @@ bool same_bits(const Points& a, const Points& b) {
 std::vector<Pair> all_pairs() {
     std::vector<Pair> pairs;
     for (const HardCase& hard : hard_cases())
-        for (const char* stepper : {"quasi-newton", "small", "fast"})
+        for (const char* stepper : {"quasi-newton", "quasi-newton-3s4", "small", "fast"})
             pairs.emplace_back(hard.name, stepper);
     return pairs;
 }

@@ -52,6 +52,14 @@ TEST(BoundaryPart, PartsOfAMotionJoinAndEndWhereItEnds) {
     EXPECT_NEAR(angle, 1.0 / 3.0, 1e-12);
     EXPECT_NEAR(parts[0].obstacles[0].pose1.translation().x(), 4.0 / 3.0, 1e-12);
     EXPECT_NEAR(parts[0].pin_targets(1, 1), garment.rest().vertices(3, 1) + 0.02, 1e-12);
+
+    BoundaryPart flat;
+    flat.begin(garment, state, boundary, 3, BoundaryPart::Surfaces::left_out);
+    const Boundary& first = flat.take(0);
+    ASSERT_EQ(first.obstacles.size(), 2u);
+    EXPECT_EQ(first.obstacles[0].friction, ball.friction);
+    EXPECT_EQ(first.obstacles[1].x0.rows(), 0);
+    EXPECT_EQ(first.pin_targets, parts[0].pin_targets);
 }
 
 }  // namespace

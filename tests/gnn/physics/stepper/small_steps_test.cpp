@@ -1,0 +1,221 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "data/authoring/sheet.h"
+#include "data/core/errors.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
+
+namespace cloth::small_steps_test {
+namespace {
+
+constexpr double dt = 1.0 / 30.0;
+
+ClothStepperSettings small(int count, int iterations) {
+    ClothStepperSettings settings;
+    settings.step = StepSettings::in_small_steps(count, iterations);
+    settings.guard = GuardSettings::off();
+    return settings;
+}
+
+/// Parts that find contacts and project anew: slow and plain, the same physics.
+ClothStepperSettings parts(int count, int iterations) {
+    ClothStepperSettings settings =
+        ClothStepperSettings::plain(IterationLimits::exactly(iterations));
+    settings.substeps = count;
+    return settings;
+}
+
+class SmallSteps : public ::testing::Test {
+ protected:
+    static Boundary boundary_of(const Garment& garment, const ClothState& state) {
+        Boundary boundary;
+        boundary.pin_targets.resize(static_cast<Eigen::Index>(garment.pins().size()), 3);
+        for (size_t p = 0; p < garment.pins().size(); ++p)
+            boundary.pin_targets.row(static_cast<Eigen::Index>(p)) = state.x.row(garment.pins()[p]);
+        return boundary;
+    }
+    /// A sheet that two corners hold, level and on its way.
+    const Garment m_hung{"sheet", make_sheet(0.4, 0.4, 150), Fabric::soft_cotton(), {0, 12}};
+    const Garment m_free{"sheet", make_sheet(0.4, 0.4, 150), Fabric::soft_cotton(), {}};
+    ClothState moving(const Garment& garment, const Vec3& v) const {
+        ClothState state = ClothState::at_rest(garment);
+        state.v.rowwise() = v.transpose();
+        for (const int pin : garment.pins()) state.v.row(pin).setZero();
+        return state;
+    }
+};
+
+TEST_F(SmallSteps, AreTheSameAsPartsWhereNothingIsTouched) {
+    ClothStepper fast(m_hung, small(4, 300)), slow(m_hung, parts(4, 300));
+    ClothState a = moving(m_hung, Vec3(0, -0.5, 0)), b = a;
+    Boundary boundary = boundary_of(m_hung, a);
+    for (int frame = 0; frame < 10; ++frame) {
+        boundary.pin_targets.col(0).array() += 0.01;
+        ASSERT_TRUE(fast.step(boundary, dt, a).finite);
+        ASSERT_TRUE(slow.step(boundary, dt, b).finite);
+        ASSERT_LT((a.x - b.x).cwiseAbs().maxCoeff(), 1e-5) << "frame " << frame;
+        ASSERT_LT((a.v - b.v).cwiseAbs().maxCoeff(), 1e-3) << "frame " << frame;
+    }
+    EXPECT_NEAR(a.time, 10 * dt, 1e-12);
+}
+
+TEST_F(SmallSteps, FallNearerToTheParabola) {
+    double error[2];
+    for (const int count : {1, 8}) {
+        ClothState state = moving(m_free, Vec3(0, -0.5, 0));
+        ClothStepper stepper(m_free, small(count, 5));
+        const Boundary boundary = boundary_of(m_free, state);
+        for (int frame = 0; frame < 15; ++frame) stepper.step(boundary, dt, state);
+        const double fallen = state.x(7, 1) - m_free.rest().vertices(7, 1);
+        error[count == 8] = std::abs(fallen + 0.5 * 0.5 + 0.5 * 9.81 * 0.25);
+    }
+    EXPECT_NEAR(error[0], 0.5 * 9.81 * 0.5 * dt, 1e-6) << "too far by g t h / 2";
+    EXPECT_NEAR(error[1], error[0] / 8, 1e-6);
+}
+
+TEST_F(SmallSteps, OnABallAreNearToParts) {
+    ClothStepper fast(m_free, small(4, 20)), slow(m_free, parts(4, 20));
+    ClothState a = moving(m_free, Vec3(0, -0.5, 0)), b = a;
+    Boundary boundary = boundary_of(m_free, a);
+    Obstacle ball;
+    ball.shape = ObstacleShape::sphere;
+    ball.radius = 0.1;
+    ball.friction = 0.5;
+    ball.pose0.translation() = Vec3(0.0, a.x.col(1).mean() - 0.13, 0.0);
+    for (int frame = 0; frame < 15; ++frame) {
+        ball.pose1 = ball.pose0;
+        ball.pose1.translation().y() += 0.01;
+        boundary.obstacles = {ball};
+        const StepReport report = fast.step(boundary, dt, a);
+        ASSERT_TRUE(report.finite);
+        ASSERT_LT(report.max_penetration, 1e-3);
+        ASSERT_TRUE(slow.step(boundary, dt, b).finite);
+        ball.pose0 = ball.pose1;
+    }
+    const double off = std::sqrt((a.x - b.x).rowwise().squaredNorm().mean());
+    EXPECT_LT(off, 5e-3) << "m, after half a second on a ball that rises";
+}
+
+TEST_F(SmallSteps, ClothAtRestTakesOneStepOfAllIterations) {
+    ClothState a = ClothState::at_rest(m_hung), b = a;
+    const Boundary boundary = boundary_of(m_hung, a);
+    ClothStepperSettings one = ClothStepperSettings::plain();
+    one.step.quasi_newton = StepSettings::in_small_steps().quasi_newton;
+    one.step.quasi_newton.iterations = 12;
+    const StepReport report = ClothStepper(m_hung, small(4, 3)).step(boundary, dt, a);
+    EXPECT_EQ(report.iterations, 12);
+    ClothStepper(m_hung, one).step(boundary, dt, b);
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(a.v, b.v);
+}
+
+TEST_F(SmallSteps, AStepMayBeTakenAgainFromWhereItBegan) {
+    ClothStepper stepper(m_hung, small(4, 3));
+    ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
+    const Boundary boundary = boundary_of(m_hung, state);
+    for (int frame = 0; frame < 3; ++frame) stepper.step(boundary, dt, state);
+    ClothState first = state, again = state, third = state;
+    stepper.step(boundary, dt, first);
+    stepper.step(boundary, dt, again);
+    stepper.step(boundary, dt, third);
+    EXPECT_EQ(first.x, again.x) << "with the velocity at the end of the step before, too";
+    EXPECT_EQ(first.v, again.v);
+    EXPECT_EQ(first.x, third.x);
+}
+
+TEST_F(SmallSteps, AStepThatFailsLeavesTheState) {
+    ClothStepper stepper(m_hung, small(4, 3));
+    ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
+    const Boundary boundary = boundary_of(m_hung, state);
+    for (int frame = 0; frame < 3; ++frame) ASSERT_TRUE(stepper.step(boundary, dt, state).finite);
+    const ClothState before = state;
+    EXPECT_FALSE(stepper.step(boundary, std::numeric_limits<double>::min(), state).finite);
+    EXPECT_EQ(state.x, before.x);
+    EXPECT_EQ(state.v, before.v);
+    EXPECT_EQ(state.time, before.time);
+    EXPECT_TRUE(stepper.step(boundary, dt, state).finite);
+}
+
+TEST_F(SmallSteps, EnergyNeverRises) {
+    for (unsigned seed = 1; seed <= 8; ++seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> speed(-1.0, 1.0);
+        ClothState state = moving(m_hung, Vec3(speed(random), speed(random), speed(random)));
+        const Boundary boundary = boundary_of(m_hung, state);
+        ClothStepperSettings settings = small(4, 3);
+        if (seed % 2 == 0) settings.step.potential.integrator = Integrator::bdf2;
+        ClothStepper stepper(m_hung, settings);
+        const auto energy = [&] {
+            double sum = *stepper.internal_energy(state.x);
+            for (Eigen::Index i = 0; i < state.x.rows(); ++i)
+                sum += m_hung.masses()[i] *
+                       (0.5 * state.v.row(i).squaredNorm() + 9.81 * state.x(i, 1));
+            return sum;
+        };
+        const double begun = energy(), scale = m_hung.masses().sum() * 9.81 * 0.4;
+        double most = begun;
+        for (int frame = 0; frame < 60; ++frame) {
+            ASSERT_TRUE(stepper.step(boundary, dt, state).finite);
+            most = std::max(most, energy());
+        }
+        EXPECT_LT(most - begun, 0.02 * scale) << "seed " << seed;
+        EXPECT_LT(energy() - begun, -0.1 * scale) << "seed " << seed << ": it hangs";
+    }
+}
+
+TEST_F(SmallSteps, WithoutTimeEachTakesOneIteration) {
+    ClothStepper stepper(m_hung, small(4, 3));
+    ASSERT_TRUE(stepper.set_max_ms(1e-6));
+    ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
+    const Boundary boundary = boundary_of(m_hung, state);
+    const StepReport report = stepper.step(boundary, dt, state);
+    EXPECT_TRUE(report.finite);
+    EXPECT_TRUE(report.out_of_time);
+    EXPECT_EQ(report.iterations, 4);
+    EXPECT_EQ(report.substeps, 1);
+}
+
+TEST_F(SmallSteps, ShareTheIterationsThatAStepMayTake) {
+    ClothStepper stepper(m_hung, small(4, 3));
+    ASSERT_TRUE(stepper.set_max_iterations(8));
+    ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
+    const Boundary boundary = boundary_of(m_hung, state);
+    EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 8);
+    stepper.set_max_iterations(1);
+    EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 4) << "one each at least";
+}
+
+/// Predicts nothing.
+class Nowhere : public StepStart {
+ public:
+    std::string name() const override { return "nowhere"; }
+    double fixed_dt() const override { return dt; }
+    bool predict(const ClothState&, const Boundary&, const IncrementalPotential&, const Points&,
+                 PotentialValue&, Points&, StageTimes&) override {
+        return false;
+    }
+};
+
+TEST_F(SmallSteps, SettingsThatDoNotGoTogetherAreRefused) {
+    EXPECT_THROW(ClothStepper(m_hung, small(0, 3)), ArgumentError);
+    EXPECT_THROW(ClothStepper(m_hung, small(65, 3)), ArgumentError);
+    ClothStepperSettings both = small(4, 3);
+    both.substeps = 2;
+    EXPECT_THROW(ClothStepper(m_hung, both), ArgumentError);
+    EXPECT_THROW(ClothStepper(m_hung, small(4, 3), std::make_shared<Nowhere>()), ArgumentError);
+    EXPECT_NO_THROW(ClothStepper(m_hung, small(1, 3), std::make_shared<Nowhere>()));
+}
+
+TEST_F(SmallSteps, StandInTheName) {
+    EXPECT_EQ(ClothStepper(m_hung, small(4, 3)).name(), "quasi-newton-3s4");
+    ClothStepperSettings settings = small(2, 5);
+    settings.step.potential.integrator = Integrator::bdf2;
+    EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton-5s2-bdf2");
+}
+
+}  // namespace
+}  // namespace cloth::small_steps_test
