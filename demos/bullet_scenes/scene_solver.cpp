@@ -18,6 +18,19 @@ StepperFactory quasi_newton(int iterations) {
     return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
 
+/// "KsS": S small steps of K iterations. None: it is something else.
+std::optional<StepperFactory> small_steps(const std::string& name, const std::string& prefix) {
+    const size_t mark = name.find('s', prefix.size());
+    if (name.rfind(prefix, 0) != 0 || mark == std::string::npos) return std::nullopt;
+    const std::string solver = "solver " + name;
+    const int iterations =
+        whole_number(solver, name.substr(prefix.size(), mark - prefix.size()), 1, 1000);
+    const int count = whole_number(solver, name.substr(mark + 1), 1, 64);
+    ClothSettings settings;
+    settings.step = StepSettings::in_small_steps(count, iterations);
+    return [settings](const Garment& garment) { return make_cloth(garment, settings); };
+}
+
 StepperFactory xpbd(int substeps) {
     XpbdSettings settings;
     settings.substeps = substeps;
@@ -60,7 +73,9 @@ std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name,
                                                         const btGnnSolverSettings& settings) const {
     if (name == "bullet") return nullptr;
     StepperFactory factory;
-    if (const auto iterations = number_after(name, "quasi-newton-"))
+    if (const auto small = small_steps(name, "quasi-newton-"))
+        factory = *small;
+    else if (const auto iterations = number_after(name, "quasi-newton-"))
         factory = quasi_newton(*iterations);
     else if (const auto substeps = number_after(name, "xpbd-"))
         factory = xpbd(*substeps);

@@ -86,6 +86,14 @@ std::vector<DataSet> data_sets() {
          "report.json",
          {},
          {}},
+        {"which_solver",
+         figures + "which_solver.json",
+         "build/release/demos/speed_error --scene all --frames 30 --relative-to xpbd-40 --solvers "
+         "xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-2s2,quasi-newton-2s4,"
+         "quasi-newton-3s4,quasi-newton-5s4,quasi-newton-3s4-bdf2,small,small+3 --out OUT",
+         "speed_error.json",
+         {},
+         {}},
         {"speed_error",
          figures + "speed_error.json",
          "build/release/demos/speed_error --scene all --frames 30 --out OUT",
@@ -97,7 +105,7 @@ std::vector<DataSet> data_sets() {
          figures + "stiff.json",
          "build/release/demos/speed_error --scene all --fabric real --frames 30 --relative-to "
          "xpbd-40 --solvers bullet-fine,xpbd-40,xpbd-100,quasi-newton-10,quasi-newton,"
-         "quasi-newton-bdf2 --out OUT",
+         "quasi-newton-bdf2,quasi-newton-3s4 --out OUT",
          "speed_error.json",
          {},
          {}},
@@ -139,7 +147,8 @@ std::vector<DataSet> data_sets() {
         {"hard_cases",
          figures + "hard_cases.json",
          "build/release/demos/hard_cases"
-         " --steppers quasi-newton,quasi-newton-bdf2,small,small+3,fast,fast+0,xpbd-40 "
+         " --steppers quasi-newton,quasi-newton-bdf2,quasi-newton-3s4,small,small+3,fast,fast+0,"
+         "xpbd-40 "
          "--no-pictures --out OUT",
          "hard_cases.json",
          {},

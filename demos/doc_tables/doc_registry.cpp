@@ -30,7 +30,8 @@ MarkdownTable commands_table() {
 const Registry& doc_registry() {
     static const Registry registry = {
         data_sets(),
-        {{"which_solver", {"speed_error"}, which_solver_table},
+        {{"which_solver", {"which_solver"}, which_solver_table},
+         {"small_steps", {"which_solver"}, small_steps_table},
          {"whole_motion", {"whole_motion"}, whole_motion_table},
          {"proxy", {"proxy"}, proxy_table},
          {"speed_error", {"speed_error"}, speed_error_table},

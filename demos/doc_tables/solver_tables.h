@@ -10,6 +10,8 @@ MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
 MarkdownTable proxy_table(const std::vector<DataFile>& files);
 MarkdownTable speed_error_table(const std::vector<DataFile>& files);
 MarkdownTable which_solver_table(const std::vector<DataFile>& files);
+/// All solvers that those of which_solver_table() are chosen from.
+MarkdownTable small_steps_table(const std::vector<DataFile>& files);
 /// Cotton as it is measured.
 MarkdownTable stiff_table(const std::vector<DataFile>& files);
 /// Median, 95 % and longest of the steps; a garment in each file, the same solvers in each.

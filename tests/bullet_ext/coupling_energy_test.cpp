@@ -136,14 +136,24 @@ struct Outcome {
 
 using Maker = std::function<void(Dice&, World&, MeteredSolver&)>;
 
-Outcome run(unsigned number, double seconds, double whip, double fixed,
+/// How cloth is stepped.
+struct Steps {
+    /// Time step that the stepper is made for (s), 0: any. Steps that look ahead are balanced with
+    /// the bodies as they are foreseen, which is not what is measured here.
+    double fixed = 0.0;
+    bool small = false;
+};
+
+Outcome run(unsigned number, double seconds, double whip, const Steps& steps,
             const btGnnSolverSettings& settings, const Maker& make) {
     Dice dice(number);
     MeteredSolver solver(
         [=](const Garment& garment) -> std::unique_ptr<Stepper> {
-            auto stepper = std::make_unique<ClothStepper>(garment);
-            if (fixed == 0.0) return stepper;
-            return std::make_unique<Ticking>(std::move(stepper), fixed, true);
+            ClothStepperSettings stepping;
+            if (steps.small) stepping.step = StepSettings::in_small_steps();
+            auto stepper = std::make_unique<ClothStepper>(garment, stepping);
+            if (steps.fixed == 0.0) return stepper;
+            return std::make_unique<Ticking>(std::move(stepper), steps.fixed, true);
         },
         settings);
     World world(&solver);
@@ -212,10 +222,8 @@ Broken broken_by(const Outcome& outcome, const Bounds& bounds, bool balanced) {
 }
 
 /// @param count of worlds, in an optimised build
-/// @param fixed time step that the stepper is made for (s), 0: any. Steps that look ahead are
-///              balanced with the bodies as they are foreseen, which is not what is measured here
 void check(unsigned first, int count, double seconds, const Bounds& bounds, const Maker& make,
-           double fixed = 0.0, const btGnnSolverSettings& settings = {}) {
+           const Steps& steps = {}, const btGnnSolverSettings& settings = {}) {
     const char* only = std::getenv("CLOTH_WORLD");     // for whoever looks into one world,
     const char* others = std::getenv("CLOTH_WORLDS");  // or into others: FIRST,COUNT
     if (others) std::sscanf(others, "%u,%d", &first, &count);
@@ -225,9 +233,9 @@ void check(unsigned first, int count, double seconds, const Bounds& bounds, cons
         const unsigned number = first + static_cast<unsigned>(k);
         if (only && std::to_string(number) != only) continue;
         SCOPED_TRACE("world " + std::to_string(number));
-        const Outcome outcome = run(number, seconds, bounds.whip, fixed, settings, make);
+        const Outcome outcome = run(number, seconds, bounds.whip, steps, settings, make);
         ASSERT_TRUE(outcome.finite);
-        const Broken broken = broken_by(outcome, bounds, fixed == 0.0);
+        const Broken broken = broken_by(outcome, bounds, steps.fixed == 0.0);
         EXPECT_LE(broken.speed, bounds.rare > 0 ? kFar : 1.0);
         EXPECT_LE(broken.energy, bounds.rare > 0 ? kFarEnergy : 1.0);
         if (broken.speed <= 1.0 && broken.energy <= 1.0) continue;
@@ -290,20 +298,29 @@ TEST(CouplingEnergy, Landings) {
 }
 
 TEST(CouplingEnergy, LandingsOfStepsThatLookAhead) {
-    check(1000, 100, 0.8, {1.05}, landing, 1.0 / 30.0);
+    check(1000, 100, 0.8, {1.05}, landing, {1.0 / 30.0});
+}
+
+TEST(CouplingEnergy, LandingsInSmallSteps) {
+    check(1000, 100, 0.8, {1.05}, landing, {0.0, true});
 }
 
 TEST(CouplingEnergy, Anchors) {
-    check(2000, 250, 0.8, {2.2, 1}, anchored, 0.0, soft_cotton());
+    check(2000, 250, 0.8, {2.2, 1}, anchored, {}, soft_cotton());
 }
 
 TEST(CouplingEnergy, AnchorsOnStiffCloth) {
     check(2000, 250, 0.8, {2.2, 1}, anchored);
 }
 
+TEST(CouplingEnergy, AnchorsInSmallSteps) {
+    check(2000, 60, 0.8, {2.2, 1}, anchored, {0.0, true}, soft_cotton());
+    check(2000, 60, 0.8, {2.2, 1}, anchored, {0.0, true});
+}
+
 // As a network has one. Bodies that hang on the cloth are not foreseen all the same.
 TEST(CouplingEnergy, AnchorsOfSteppersWithATimeStep) {
-    check(2000, 100, 0.8, {2.2, 1}, anchored, 1.0 / 30.0);
+    check(2000, 100, 0.8, {2.2, 1}, anchored, {1.0 / 30.0});
 }
 
 /// However light a body is, and however fast it turns.
@@ -342,7 +359,7 @@ TEST(CouplingEnergy, ASheetThatBodiesHangOnFallsAsFreely) {
 }
 
 TEST(CouplingEnergy, Rods) {
-    check(3000, 250, 0.8, {2.2, 1}, rod, 0.0, soft_cotton());
+    check(3000, 250, 0.8, {2.2, 1}, rod, {}, soft_cotton());
 }
 
 TEST(CouplingEnergy, RodsOnStiffCloth) {
@@ -350,7 +367,7 @@ TEST(CouplingEnergy, RodsOnStiffCloth) {
 }
 
 TEST(CouplingEnergy, RodsOfSteppersWithATimeStep) {
-    check(3000, 100, 0.8, {2.2, 1}, rod, 1.0 / 30.0, soft_cotton());
+    check(3000, 100, 0.8, {2.2, 1}, rod, {1.0 / 30.0}, soft_cotton());
 }
 
 }  // namespace cloth::coupling_energy_test

@@ -270,6 +270,11 @@ TEST_F(GuideSnippets, Solvers) {
     const auto physics = [](const cloth::Garment& garment) {
         return cloth::make_cloth(garment);  // quasi-newton
     };
+    const auto small_steps = [](const cloth::Garment& garment) {  // quasi-newton-3s4
+        cloth::ClothSettings settings;
+        settings.step = cloth::StepSettings::in_small_steps();
+        return cloth::make_cloth(garment, settings);
+    };
     const auto bdf2 = [](const cloth::Garment& garment) {  // quasi-newton-bdf2
         cloth::ClothSettings settings;
         settings.step.potential.integrator = cloth::Integrator::bdf2;
@@ -299,8 +304,13 @@ TEST_F(GuideSnippets, Solvers) {
     };
     // Learned steppers are named after the file of their network.
     const std::pair<cloth::StepperFactory, const char*> solvers[] = {
-        {small, "small"},        {physics, "quasi-newton"}, {bdf2, "quasi-newton-bdf2"},
-        {xpbd, "xpbd-40"},       {xpbd_layers, "xpbd-40"},  {small_3, "small+3"},
+        {small, "small"},
+        {physics, "quasi-newton"},
+        {small_steps, "quasi-newton-3s4"},
+        {bdf2, "quasi-newton-bdf2"},
+        {xpbd, "xpbd-40"},
+        {xpbd_layers, "xpbd-40"},
+        {small_3, "small+3"},
         {reference, "reference"}};
     for (const auto& [factory, name] : solvers) {
         solver.attach(body, cloth::Fabric::soft_cotton(), factory);

@@ -106,6 +106,7 @@ StepReport StepSolver::in_small_steps(const Boundary& boundary, double dt, Cloth
 
 bool StepSolver::prefers_small_steps(const ClothState& state) const {
     return m_settings.small_steps > 1 && m_settings.minimiser == MinimiserKind::quasi_newton &&
+           std::isinf(m_most_residual) &&
            state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
 }
 

@@ -36,8 +36,8 @@ struct StepSettings {
     /// the iterations of `quasi_newton` each. All have the contacts of the step, which move along,
     /// and one contact projection follows the last. Small steps damp less, are nearer to the
     /// equations of motion, and need fewer iterations. Cloth that hardly moves takes one step with
-    /// the iterations of all instead, so that it comes to rest. Not with a start, which is of a
-    /// whole step.
+    /// the iterations of all instead, so that it comes to rest, and so does a step that has to
+    /// reach a residual. Not with a start, which is of a whole step.
     int small_steps = 1;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
+#include <algorithm>
 #include <map>
 
 #include "demos/bullet_scenes/scene_run.h"
@@ -52,13 +53,15 @@ std::vector<SwapCase> swap_cases() {
     std::vector<SwapCase> cases;
     for (const SceneRecipe& recipe : smallScenes()) {
         cases.push_back({"quasi-newton-3", recipe, 0.001});
+        cases.push_back({"quasi-newton-3s4", recipe, 0.001});
         cases.push_back({"small", recipe, 0.01});
     }
     return cases;
 }
 
 std::string name_of(const testing::TestParamInfo<SwapCase>& info) {
-    const std::string solver = info.param.solver == "small" ? "small" : "quasi_newton";
+    std::string solver = info.param.solver;
+    std::replace(solver.begin(), solver.end(), '-', '_');
     return std::string(info.param.recipe.name) + "_" + solver;
 }
 
