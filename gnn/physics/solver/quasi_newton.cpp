@@ -121,7 +121,7 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
     if (!m_continued) m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
     if (m_settings.contact_cg_iterations > 0 && m_contacts.active() &&
-        !(m_continued && m_matrix.is_deflated()))
+        !(m_continued && m_matrix.deflate_as_before()))
         m_matrix.deflate(x);
     if (at_x) {
         report.energy = at_x->energy;

@@ -21,22 +21,19 @@ void QuasiNewtonMatrix::precondition(const Points& b, Points& out) const {
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
+    m_deflated = false;
     if (!m_system->is_of(garment.fabric())) {
         m_factors.clear();
-        m_deflated = false;
         m_system = QuasiNewtonSystem::of(garment);
     }
     const auto kept = std::find_if(m_factors.begin(), m_factors.end(),
                                    [dt](const auto& factor) { return factor->dt == dt; });
     if (kept != m_factors.end()) {
-        if (kept == m_factors.begin()) return true;
-        m_deflated = false;
         m_factors.splice(m_factors.begin(), m_factors, kept);
         return true;
     }
     if (m_factors.size() == max_factors) m_factors.pop_back();
     ++m_factorisations;
-    m_deflated = false;
     auto factor = m_system->factor(dt);
     if (!factor) return false;
     m_factors.push_front(std::move(factor));
@@ -81,6 +78,12 @@ void QuasiNewtonMatrix::deflate(const Points& x) {
     m_affine.take(m_points, m_system->laplacian(), m_system->fabric().longitudinal(),
                   m_system->masses(), 1.0 / (dt * dt));
     m_deflated = true;
+    m_deflated_factor = m_factors.front();
+}
+
+bool QuasiNewtonMatrix::deflate_as_before() {
+    m_deflated = !m_factors.empty() && m_deflated_factor.lock() == m_factors.front();
+    return m_deflated;
 }
 
 void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int iterations,

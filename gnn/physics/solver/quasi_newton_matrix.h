@@ -49,7 +49,8 @@ class QuasiNewtonMatrix {
     /// Until the next `prepare`, solves with contact blocks find the affine displacements of the
     /// vertices at x (|V| x 3, m) directly.
     void deflate(const Points& x);
-    bool is_deflated() const { return m_deflated; }  ///< for this P, around some x
+    /// Takes the displacements of the last deflate() again, if it was of this P. False: it was not.
+    bool deflate_as_before();
 
     /// out = (P + contact blocks)^-1 b (free), by so many conjugate-gradient iterations
     /// preconditioned by P, of soft fabrics in single precision, to which the answer is exact. They
@@ -73,6 +74,7 @@ class QuasiNewtonMatrix {
     std::list<std::shared_ptr<const QuasiNewtonSystem::Factor>> m_factors;
     int m_factorisations = 0;
     bool m_deflated = false;
+    std::weak_ptr<const QuasiNewtonSystem::Factor> m_deflated_factor;  ///< P of m_affine
     mutable AffineCorrection m_affine;
     Points m_points;  ///< n x 3 (m)
     mutable Points m_residual, m_preconditioned, m_direction, m_product, m_p_direction;  ///< n x 3

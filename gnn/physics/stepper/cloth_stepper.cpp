@@ -256,14 +256,19 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
 }
 
 /// Of a constant acceleration a, the last of N parts ends faster than the mean by
-/// (N - 1) / 2N a dt; so a step of N parts may follow one of another number.
+/// (N - 1) / 2N a dt; so a step of N parts may follow one of another number. Where a step is cut
+/// for its motion alone, another number goes without: what is lost damps what moves so fast.
 void ClothStepper::add_lag(int parts, ClothState& state) const {
+    if (parts == 1) return;
     const auto share = [](int count) { return static_cast<double>(count - 1) / count; };
-    for (const Lag* lag : {&m_lag, &m_lag_before})
-        if (parts > 1 && lag->parts > 1 && same_points(lag->x, state.x)) {
+    for (const Lag* lag : {&m_lag, &m_lag_before}) {
+        if (lag->parts < 2 || !same_points(lag->x, state.x)) continue;
+        if (lag->parts == parts)
+            state.v += lag->v;
+        else if (m_solver->settings().small_steps > 1)
             state.v += share(parts) / share(lag->parts) * lag->v;
-            return;
-        }
+        return;
+    }
 }
 
 void ClothStepper::keep_lag(int parts, const Points& end_velocity, const ClothState& state) {

@@ -86,8 +86,8 @@ TEST(SpeedErrorOptions, DefaultSolversHaveEachNetworkInEachBackend) {
     EXPECT_EQ(count(without, "torch-"), 0);
     EXPECT_EQ(count(without, "bullet-"), 12);
     EXPECT_EQ(count(without, "xpbd-"), 4);
-    EXPECT_EQ(count(without, "quasi-newton"), 8);
-    EXPECT_EQ(count(without, "-bdf2"), 5);
+    EXPECT_EQ(count(without, "quasi-newton"), 13);
+    EXPECT_EQ(count(without, "-bdf2"), 6);
     EXPECT_EQ(std::count(without.begin(), without.end(), "fast_16"), 1) << "as shipped";
     EXPECT_EQ(count(without, "reference"), 1);
 }
