@@ -57,7 +57,7 @@ DataSet motions(const std::string& name, const std::string& options) {
             figures + name + ".json",
             "build/release/demos/hard_cases"
             " --motions ../shared/data/motions/validation,../shared/data/motions/train"
-            " --steppers reference,quasi-newton,small" +
+            " --steppers reference,quasi-newton,small,quasi-newton-3s4" +
                 options + " --no-pictures --out OUT",
             "hard_cases.json",
             {},
