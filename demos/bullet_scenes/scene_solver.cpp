@@ -18,16 +18,9 @@ StepperFactory quasi_newton(int iterations) {
     return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
 
-/// "KsS": S small steps of K iterations. None: it is something else.
-std::optional<StepperFactory> small_steps(const std::string& name, const std::string& prefix) {
-    const size_t mark = name.find('s', prefix.size());
-    if (name.rfind(prefix, 0) != 0 || mark == std::string::npos) return std::nullopt;
-    const std::string solver = "solver " + name;
-    const int iterations =
-        whole_number(solver, name.substr(prefix.size(), mark - prefix.size()), 1, 1000);
-    const int count = whole_number(solver, name.substr(mark + 1), 1, 64);
+StepperFactory small_steps(const StepSettings& step) {
     ClothSettings settings;
-    settings.step = StepSettings::in_small_steps(count, iterations);
+    settings.step = step;
     return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
 
@@ -73,8 +66,8 @@ std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name,
                                                         const btGnnSolverSettings& settings) const {
     if (name == "bullet") return nullptr;
     StepperFactory factory;
-    if (const auto small = small_steps(name, "quasi-newton-"))
-        factory = *small;
+    if (const auto small = small_steps_named(name))
+        factory = small_steps(*small);
     else if (const auto iterations = number_after(name, "quasi-newton-"))
         factory = quasi_newton(*iterations);
     else if (const auto substeps = number_after(name, "xpbd-"))

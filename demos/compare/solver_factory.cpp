@@ -86,25 +86,20 @@ std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& sc
 
 std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {
     ClothStepperSettings settings;
-    const Integrator integrator = take_integrator(name);
-    const std::string prefix = "quasi-newton-";
-    if (name != "quasi-newton") {
-        const size_t mark = name.find_first_of("xs", prefix.size());
-        const std::string first = name.substr(0, mark);
-        const int iterations = iterations_of(first, prefix, 0, 1000);
-        const bool small = mark != std::string::npos && name[mark] == 's';
-        if (small) {
-            settings.step =
-                StepSettings::in_small_steps(iterations_of(name, first + "s", 1, 64), iterations);
-        } else {
-            settings.step.quasi_newton = IterationLimits::exactly(iterations);
-            settings.guard.max_substeps = 1;
-            if (mark != std::string::npos)
-                settings.substeps = iterations_of(name, first + "x", 1, 64);
-        }
+    std::string plain = name;
+    take_integrator(plain);
+    if (const auto small = small_steps_named(plain)) {
+        settings.step = *small;
+    } else if (plain != "quasi-newton") {
+        const size_t cross = plain.find('x');
+        const std::string first = plain.substr(0, cross);
+        settings.step.quasi_newton =
+            IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000));
+        settings.guard.max_substeps = 1;
+        if (cross != std::string::npos)
+            settings.substeps = iterations_of(plain, first + "x", 1, 64);
     }
     set_scene(name, scene, settings);
-    settings.step.potential.integrator = integrator;
     return std::make_unique<ClothStepper>(scene.garment(), settings);
 }
 
@@ -227,6 +222,15 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
         "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
+}
+
+std::optional<StepSettings> small_steps_named(const std::string& solver) {
+    const std::string prefix = "quasi-newton-";
+    const size_t mark = solver.find('s', prefix.size());
+    if (!starts_with(solver, prefix) || mark == std::string::npos) return std::nullopt;
+    const std::string first = solver.substr(0, mark);
+    const int count = iterations_of(solver, first + "s", 1, 64);
+    return StepSettings::in_small_steps(count, iterations_of(first, prefix, 0, 1000));
 }
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,

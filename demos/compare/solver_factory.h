@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 
 namespace cloth {
 
+struct StepSettings;
+
 /// Evaluates trained weights with LibTorch.
 using TorchMaker = std::function<std::shared_ptr<Predictor>(const Weights&)>;
 
@@ -20,6 +23,10 @@ struct SolverSettings {
     int threads = 0;             ///< of the engine; 0: all that OpenMP gives
     TorchMaker torch = nullptr;  ///< empty: LibTorch is not built in
 };
+
+/// Of "quasi-newton-KsS", S small steps of K iterations; none: another name. @throws UsageError for
+/// a number out of range
+std::optional<StepSettings> small_steps_named(const std::string& solver);
 
 /// Makes the solver called `name` for the scene's garment:
 ///

@@ -101,7 +101,8 @@ std::string ClothStepper::name() const {
 
 void ClothStepper::prepare(double dt) {
     m_solver->prepare(dt / m_substeps);
-    m_solver->prepare(dt / m_solver->settings().small_steps);
+    const int small_steps = m_solver->settings().small_steps;
+    if (small_steps > 1) m_solver->prepare(dt / small_steps);
     for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2)
         m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
 }

@@ -39,7 +39,8 @@ TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
     const FreeSheet scene;
     for (const std::string name :
          {"bullet", "bullet-fine", "bullet-50", "quasi-newton-1", "quasi-newton-10", "quasi-newton",
-          "xpbd-1", "xpbd-20", "xpbd-100"})
+          "quasi-newton-3x4", "quasi-newton-3s4", "quasi-newton-3s4-bdf2", "xpbd-1", "xpbd-20",
+          "xpbd-100"})
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
 }
 
@@ -134,8 +135,9 @@ TEST(SolverFactory, SkinningNetworksAreOfTheirGarmentAlone) {
 }
 
 TEST(SolverFactory, RefusesUnknownNamesAndNumbersByName) {
-    for (const std::string name : {"xpbd", "xpbd-", "xpbd-0", "xpbd-1001", "xpbd-20x", "xpbd--1",
-                                   "quasi-newtons", "quasi-newton-", "bullet-fast"})
+    for (const std::string name :
+         {"xpbd", "xpbd-", "xpbd-0", "xpbd-1001", "xpbd-20x", "xpbd--1", "quasi-newtons",
+          "quasi-newton-", "quasi-newton-3s0", "quasi-newton-3s65", "bullet-fast"})
         EXPECT_NE(refusal(name).find("solver " + name), std::string::npos) << refusal(name);
     EXPECT_NE(refusal("nothing").find("xpbd-N"), std::string::npos) << refusal("nothing");
 }

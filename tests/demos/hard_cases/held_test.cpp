@@ -39,8 +39,8 @@ bool same_bits(const Points& a, const Points& b) {
 }
 
 std::vector<Pair> all_pairs() {
-    // By small steps rounding decides how far the sleeve that an arm takes along is stretched: to
-    // 1.40 to 1.53, where 1.50 is allowed.
+    // By small steps rounding decides whether the sleeve that an arm takes along is stretched to
+    // a little less than the 1.50 that are allowed, or a little more.
     const Pair chance("clipping-armature", "quasi-newton-3s4");
     std::vector<Pair> pairs;
     for (const HardCase& hard : hard_cases())
