@@ -1,15 +1,11 @@
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <limits>
 
 #include "collision/proximity/closest_face_tree.h"
+#include "collision/proximity/eight_lanes.h"
 #include "data/core/triangle.h"
 
 // Neighbouring points visit nearly the same nodes and faces, so they are searched for together: a
@@ -24,26 +20,7 @@ namespace {
 constexpr int lanes = ClosestFaceTree::packet;
 template <class Real>
 using Lanes = std::array<Real, lanes>;
-using EightFloats = float __attribute__((vector_size(sizeof(Lanes<float>))));
 using EightDoubles = double __attribute__((vector_size(sizeof(Lanes<double>))));
-using EightFlags = std::int32_t __attribute__((vector_size(sizeof(Lanes<float>))));
-
-EightFloats load(const float* values) {
-    EightFloats loaded;
-    std::memcpy(&loaded, values, sizeof loaded);
-    return loaded;
-}
-
-/// Bit k is set where flag k is.
-unsigned bits(const EightFlags& flags) {
-#ifdef __AVX__
-    return static_cast<unsigned>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(flags)));
-#else
-    unsigned set = 0;
-    for (int k = 0; k < lanes; ++k) set |= (flags[k] != 0 ? 1u : 0u) << k;
-    return set;
-#endif
-}
 
 // What the distance of a face (m) may be off by: in single precision that holds of small faces near
 // the points that are not thin, height over longest edge; the others take double precision.
@@ -82,8 +59,8 @@ void take_smaller(Vector& a, const Vector& b) {
 
 /// Squared distances of the points to a face: to its plane above the face, else to its edges.
 template <class Real, class Vector>
-void face_distances(const FaceConstants& face, const Lanes<Real>& all_x, const Lanes<Real>& all_y,
-                    const Lanes<Real>& all_z, Lanes<float>& squared) {
+EightFloats face_distances(const FaceConstants& face, const Lanes<Real>& all_x,
+                           const Lanes<Real>& all_y, const Lanes<Real>& all_z) {
     const Eigen::Matrix<Real, 3, 1> a = face.a.cast<Real>(), ab = face.ab.cast<Real>(),
                                     ac = face.ac.cast<Real>(), bc = face.bc.cast<Real>(),
                                     normal = face.normal.cast<Real>();
@@ -118,7 +95,7 @@ void face_distances(const FaceConstants& face, const Lanes<Real>& all_x, const L
     take_smaller<Vector>(inside, w);
     take_smaller<Vector>(inside, cross2 - v - w);
     const Vector result = inside < zero ? edges : height * height * inverse[3];
-    for (size_t k = 0; k < lanes; ++k) squared[k] = static_cast<float>(result[k]);
+    return __builtin_convertvector(result, EightFloats);
 }
 
 }  // namespace
@@ -188,9 +165,9 @@ struct ClosestFaceTree::Packet {
     }
 
     /// Bit k: the box of child k is within reach, with limbs that not all ignore.
-    unsigned children_in_reach(const Node& node, Eight& squared) const {
-        squared = box_distances(node, local_centre);
-        unsigned found = bits(load(squared.data()) <= reach);
+    unsigned children_in_reach(const Node& node, EightFloats& squared) const {
+        squared = box_distances(node.low, node.high, local_centre);
+        unsigned found = bits(squared <= reach);
         for (unsigned left = tree.m_limbs.empty() ? 0 : found; left != 0; left &= left - 1) {
             const int slot = __builtin_ctz(left);
             if ((node.limbs[slot] & ~ignored_by_all) == 0) found &= ~(1u << slot);
@@ -217,24 +194,23 @@ struct ClosestFaceTree::Packet {
             return tree.m_vertices.row((*tree.m_faces)(face, k)).transpose() - centre;
         };
         const FaceConstants constants(corner(0), corner(1), corner(2));
-        alignas(32) Lanes<float> squared;
+        EightFloats squared;
         if (constants.is_thicker_than(thin_face) && constants.longest2 < small_face * small_face &&
             reach < near_centre * near_centre)
-            face_distances<float, EightFloats>(constants, near_x, near_y, near_z, squared);
+            squared = face_distances<float, EightFloats>(constants, near_x, near_y, near_z);
         else if (constants.is_thicker_than(needle))
-            face_distances<double, EightDoubles>(constants, x, y, z, squared);
+            squared = face_distances<double, EightDoubles>(constants, x, y, z);
         else
             return try_exactly(face);
         const LimbSet limb = tree.limb(face);
         bool improved = false;
-        for (unsigned left = bits(load(squared.data()) <= load(bound.data())); left != 0;
-             left &= left - 1) {
+        for (unsigned left = bits(squared <= load(bound.data())); left != 0; left &= left - 1) {
             const int k = __builtin_ctz(left);
             const auto lane = static_cast<size_t>(k);
             if ((limb & queries[k].ignored) != 0 || face == queries[k].hint) continue;
             if (candidate_count[lane] == most_candidates) decide(k);
-            candidates[lane][static_cast<size_t>(candidate_count[lane]++)] = {face, squared[lane]};
-            const float enough = widened(with_slack(squared[lane]));
+            candidates[lane][static_cast<size_t>(candidate_count[lane]++)] = {face, squared[k]};
+            const float enough = widened(with_slack(squared[k]));
             if (!(enough < bound[lane])) continue;
             bound[lane] = enough;
             improved = true;
@@ -274,7 +250,7 @@ void ClosestFaceTree::closest(const Query* queries, int count, Stack& stack, Fac
         const Entry entry = *--end;
         if (entry.squared > together.reach) continue;
         const Node& node = m_nodes[static_cast<size_t>(entry.child)];
-        Eight squared;
+        EightFloats squared;
         Entry* const first = end;
         for (unsigned left = together.children_in_reach(node, squared); left != 0;
              left &= left - 1) {

@@ -6,11 +6,14 @@
 #include <limits>
 
 #include "collision/geometry/fcl_hierarchy.h"
+#include "collision/proximity/eight_lanes.h"
 #include "data/core/triangle.h"
 
 namespace cloth {
 
 static constexpr float infinity = std::numeric_limits<float>::infinity();
+static constexpr size_t middle_depth = 3;  // of up to 64 nodes: the trees below keep threads busy
+static constexpr Eigen::Index enough_faces = 4000;  // to be worth waking threads for
 
 ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, double radius,
                                  const std::vector<std::uint8_t>* limbs)
@@ -20,8 +23,7 @@ ClosestFaceTree::ClosestFaceTree(const Points& vertices, const Faces& faces, dou
     mark_limbs();
     m_local.resize(static_cast<size_t>(vertices.rows()));
     localize();
-    fit_leaves();
-    fit_inner_nodes();
+    fit_nodes();
 }
 
 /// Up to `width` nodes of the binary tree that together replace the children of `root`: the one
@@ -63,6 +65,10 @@ void ClosestFaceTree::build_nodes() {
         }
         m_nodes.push_back(node);
     }
+    const auto at_depth = [&](size_t depth) {
+        return size_t(std::lower_bound(depths.begin(), depths.end(), depth) - depths.begin());
+    };
+    m_middle = {at_depth(middle_depth), at_depth(middle_depth + 1)};
     m_stack_size = width * depths.back();  // breadth first: the last node is one of the deepest
 }
 
@@ -87,21 +93,36 @@ void ClosestFaceTree::refit(const Points& vertices) {
     if (std::memcmp(vertices.data(), m_vertices.data(), bytes) == 0) return;
     std::memcpy(m_vertices.data(), vertices.data(), bytes);
     localize();
-    fit_leaves();
-    fit_inner_nodes();
+    fit_nodes();
+}
+
+/// The box of the coordinates that are finite (m). Four points at a time: the compiler compares
+/// several coordinates in one instruction.
+static void find_bounds(const Points& x, Vec3& low, Vec3& high) {
+    constexpr double unbounded = std::numeric_limits<double>::infinity();
+    constexpr Eigen::Index together = 12;
+    double least[together], most[together];
+    std::fill_n(least, together, unbounded);
+    std::fill_n(most, together, -unbounded);
+    const auto take = [&](double at, Eigen::Index k) {
+        least[k] = at < least[k] && at > -unbounded ? at : least[k];
+        most[k] = at > most[k] && at < unbounded ? at : most[k];
+    };
+    Eigen::Index i = 0;
+    for (; i + together <= x.size(); i += together)
+        for (Eigen::Index k = 0; k < together; ++k) take(x.data()[i + k], k);
+    for (Eigen::Index k = 0; i + k < x.size(); ++k) take(x.data()[i + k], k);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+        low[k] = std::min({least[k], least[k + 3], least[k + 6], least[k + 9]});
+        high[k] = std::max({most[k], most[k + 3], most[k + 6], most[k + 9]});
+    }
 }
 
 /// Single-precision vertices relative to the centre: far from the world's origin the boxes stay
 /// tight. Coordinates of 2^-24 relative precision are off by less than the padding.
 void ClosestFaceTree::localize() {
-    Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-    for (Eigen::Index i = 0; i < m_vertices.rows(); ++i)
-        for (int k = 0; k < 3; ++k) {
-            const double x = m_vertices(i, k);
-            if (!std::isfinite(x)) continue;
-            if (x < low[k]) low[k] = x;
-            if (x > high[k]) high[k] = x;
-        }
+    Vec3 low, high;
+    find_bounds(m_vertices, low, high);
     m_origin = 0.5 * (low + high);
     if (!m_origin.allFinite()) m_origin.setZero();
     const double extent = (high - low).norm() + m_radius;
@@ -113,35 +134,54 @@ void ClosestFaceTree::localize() {
     }
 }
 
-void ClosestFaceTree::fit_leaves() {
-    for (Node& node : m_nodes)
-        for (int slot = 0; slot < width; ++slot) {
-            const int face = ~node.child[slot];
-            if (face < 0 || face >= m_faces->rows()) continue;
-            const Vec4f& a = m_local[static_cast<size_t>((*m_faces)(face, 0))];
-            const Vec4f& b = m_local[static_cast<size_t>((*m_faces)(face, 1))];
-            const Vec4f& c = m_local[static_cast<size_t>((*m_faces)(face, 2))];
-            const bool finite = (a + b + c).isFinite().all();
-            const Vec4f low = a.min(b).min(c) - m_padding, high = a.max(b).max(c) + m_padding;
-            for (int k = 0; k < 3; ++k) {
-                node.low[k][slot] = finite ? low[k] : infinity;
-                node.high[k][slot] = finite ? high[k] : -infinity;
-            }
-        }
+/// Children come after their parents, so a pass from the back is bottom-up. What is below the nodes
+/// of one level is fitted first, by several threads.
+void ClosestFaceTree::fit_nodes() {
+    constexpr int together = 4;
+    const int first = static_cast<int>(m_middle[0]), end = static_cast<int>(m_middle[1]);
+#pragma omp parallel for schedule(dynamic, 1) if (m_faces->rows() >= enough_faces)
+    for (int i = first; i < end; i += together) fit_from_below(i, std::min(i + together, end));
+    for (size_t i = m_middle[0]; i-- > 0;) fit_slots(m_nodes[i]);
 }
 
-/// Children come after their parents, so one pass from the back is bottom-up.
-void ClosestFaceTree::fit_inner_nodes() {
-    for (size_t i = m_nodes.size(); i-- > 0;) {
-        Node& node = m_nodes[i];
-        for (int slot = 0; slot < width; ++slot) {
-            if (node.child[slot] < 0) continue;
-            const Node& child = m_nodes[static_cast<size_t>(node.child[slot])];
-            for (int k = 0; k < 3; ++k) {
-                node.low[k][slot] = child.low[k].minCoeff();
-                node.high[k][slot] = child.high[k].maxCoeff();
-            }
+/// Nodes of one level, which follow each other, and all below: their children do so, too.
+void ClosestFaceTree::fit_from_below(int first, int end) {
+    std::int32_t first_child = std::numeric_limits<std::int32_t>::max(), last_child = -1;
+    for (int i = first; i < end; ++i)
+        for (const std::int32_t child : m_nodes[static_cast<size_t>(i)].child) {
+            if (child < 0) continue;
+            first_child = std::min(first_child, child);
+            last_child = std::max(last_child, child);
         }
+    if (last_child >= 0) fit_from_below(first_child, last_child + 1);
+    for (int i = first; i < end; ++i) fit_slots(m_nodes[static_cast<size_t>(i)]);
+}
+
+void ClosestFaceTree::fit_slots(Node& node) const {
+    for (int slot = 0; slot < width; ++slot) {
+        const std::int32_t child = node.child[slot];
+        if (child < 0) {
+            if (~child < m_faces->rows()) fit_leaf(node, slot, ~child);
+            continue;
+        }
+        const Node& below = m_nodes[static_cast<size_t>(child)];
+        for (int k = 0; k < 3; ++k) {
+            node.low[k][slot] = below.low[k].minCoeff();
+            node.high[k][slot] = below.high[k].maxCoeff();
+        }
+    }
+}
+
+void ClosestFaceTree::fit_leaf(Node& node, int slot, int face) const {
+    const Vec4f& a = m_local[static_cast<size_t>((*m_faces)(face, 0))];
+    const Vec4f& b = m_local[static_cast<size_t>((*m_faces)(face, 1))];
+    const Vec4f& c = m_local[static_cast<size_t>((*m_faces)(face, 2))];
+    const Vec4f sum = a + b + c;
+    const bool finite = (sum - sum == 0.0f).all();  // Eigen's isFinite() takes one at a time
+    const Vec4f low = a.min(b).min(c) - m_padding, high = a.max(b).max(c) + m_padding;
+    for (int k = 0; k < 3; ++k) {
+        node.low[k][slot] = finite ? low[k] : infinity;
+        node.high[k][slot] = finite ? high[k] : -infinity;
     }
 }
 
@@ -153,14 +193,6 @@ void ClosestFaceTree::try_face(const Vec3& q, int face, FaceHit& best) const {
     const TriangleHit hit = closest_on_triangle(q, a, b, c);
     const bool is_tie = hit.squared == best.squared && (best.face < 0 || face < best.face);
     if (hit.squared < best.squared || is_tie) best = {face, hit.barycentric, hit.squared};
-}
-
-/// Squared distances of a point to the eight boxes of a node.
-ClosestFaceTree::Eight ClosestFaceTree::box_distances(const Node& node, const Eigen::Vector3f& q) {
-    Eight sum = Eight::Zero();
-    for (int k = 0; k < 3; ++k)
-        sum += (node.low[k] - q[k]).max(q[k] - node.high[k]).max(0.0f).square();
-    return sum;
 }
 
 void ClosestFaceTree::nearest_last(Entry* first, Entry* end) {
@@ -175,7 +207,7 @@ void ClosestFaceTree::nearest_last(Entry* first, Entry* end) {
 /// Appends the children within the bound to the stack, the nearest last, and returns its new end.
 ClosestFaceTree::Entry* ClosestFaceTree::push_children(const Node& node, const Eigen::Vector3f& q,
                                                        float bound, LimbSet ignored, Entry* end) {
-    const Eight squared = box_distances(node, q);
+    const EightFloats squared = box_distances(node.low, node.high, q);
     Entry* const first = end;
     for (int slot = 0; slot < width; ++slot) {  // no branch: which ones pass is unpredictable
         *end = {node.child[slot], squared[slot]};
@@ -211,19 +243,6 @@ FaceHit ClosestFaceTree::closest(const Vec3& q, double radius, int hint, Stack& 
     return best;
 }
 
-/// Slab test of a ray with the eight boxes of a node: where it enters them, infinity: it does not.
-ClosestFaceTree::Eight ClosestFaceTree::box_entries(const Node& node, const Eigen::Vector3f& q,
-                                                    const Eigen::Vector3f& inverse, float length) {
-    Eight enter = Eight::Zero(), leave = Eight::Constant(length);
-    for (int k = 0; k < 3; ++k) {
-        const Eight low = (node.low[k] - q[k]) * inverse[k];
-        const Eight high = (node.high[k] - q[k]) * inverse[k];
-        enter = enter.max(low.min(high));
-        leave = leave.min(low.max(high));
-    }
-    return (enter <= leave).select(enter, infinity);
-}
-
 std::optional<RayHit> ClosestFaceTree::first_hit(const Vec3& q, const Vec3& direction,
                                                  double length, Stack& stack,
                                                  LimbSet ignored) const {
@@ -249,11 +268,15 @@ std::optional<RayHit> ClosestFaceTree::first_hit(const Vec3& q, const Vec3& dire
             continue;
         }
         const Node& node = m_nodes[static_cast<size_t>(entry.child)];
-        const Eight enter =
-            box_entries(node, local, inverse, static_cast<float>(nearest) * 1.00001f);
-        for (int slot = 0; slot < width; ++slot)
-            if (enter[slot] < infinity && (node.limbs[slot] & ~ignored) != 0)
-                *end++ = {node.child[slot], enter[slot] * 0.99999f};
+        const EightFloats enter = box_entries(node.low, node.high, local, inverse,
+                                              static_cast<float>(nearest) * 1.00001f);
+        const EightSets limbs = load_eight<EightSets>(node.limbs) & ~ignored;
+        Entry* const first = end;
+        for (unsigned left = bits((enter < infinity) & (limbs != 0)); left != 0; left &= left - 1) {
+            const int slot = __builtin_ctz(left);
+            *end++ = {node.child[slot], enter[slot] * 0.99999f};
+        }
+        nearest_last(first, end);
     }
     if (face < 0) return std::nullopt;
     return RayHit{face, nearest};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -96,15 +97,14 @@ class ClosestFaceTree {
     void build_nodes();
     void mark_limbs();
     void localize();
-    void fit_leaves();
-    void fit_inner_nodes();
+    void fit_nodes();
+    void fit_from_below(int first, int end);
+    void fit_slots(Node& node) const;
+    void fit_leaf(Node& node, int slot, int face) const;
     /// A bound for single-precision squared distances that keeps everything up to `squared`.
     static float widened(double squared) {
         return static_cast<float>(squared) * 1.000002f + std::numeric_limits<float>::min();
     }
-    static Eight box_distances(const Node& node, const Eigen::Vector3f& q);
-    static Eight box_entries(const Node& node, const Eigen::Vector3f& q,
-                             const Eigen::Vector3f& inverse, float length);
     static void nearest_last(Entry* first, Entry* end);
     static Entry* push_children(const Node& node, const Eigen::Vector3f& q, float bound,
                                 LimbSet ignored, Entry* end);
@@ -119,7 +119,8 @@ class ClosestFaceTree {
     float m_padding = 0.0f;
     std::vector<Vec4f, Eigen::aligned_allocator<Vec4f>> m_local;  ///< |V|: relative to the origin
     std::vector<Node> m_nodes;                                    ///< parents before their children
-    size_t m_stack_size = 0;                                      ///< enough for any query
+    std::array<size_t, 2> m_middle = {};  ///< nodes of one level: [0] to [1]
+    size_t m_stack_size = 0;              ///< enough for any query
 };
 
 }  // namespace cloth
