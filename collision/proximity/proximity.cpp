@@ -27,7 +27,7 @@ constexpr size_t few_rows = 16;        // one row of so many is not worth bringi
 constexpr size_t max_answer_sets = 4;  // sets of query points of different size
 // Work that is worth waking threads for, which are late where other programs keep the cores busy.
 // One: a point against a primitive, about 20 ns.
-constexpr double min_parallel = 16384;
+constexpr double min_parallel = 4096;
 constexpr double mesh_work = 32;
 
 /// What a query point was told last.
@@ -35,12 +35,13 @@ struct Answer {
     SurfaceHit hit;
     int hint = -1;          ///< the face that was nearest when there was one
     Vec3 x = Vec3::Zero();  ///< the point (m)
-    double radius = -1.0;   ///< of the search (m); negative: the surface has moved since
+    double radius = -1.0;   ///< of the search (m)
     LimbSet ignored = 0;
+    unsigned pose = 0;  ///< see Answers
 
-    /// Whether a search would find the same to the bit. It would, too, if it passed over more limbs
-    /// than the answered one did, or looked less far (see find_nearest), as long as no face at what
-    /// was found is of such a limb.
+    /// Whether a search would find the same to the bit, as long as the surface has not moved. It
+    /// would, too, if it passed over more limbs than the answered one did, or looked less far (see
+    /// find_nearest), as long as no face at what was found is of such a limb.
     bool is_to(const Vec3& point, double within, LimbSet passed_over) const {
         return within <= radius && x == point && (ignored & ~passed_over) == 0 &&
                (hit.limbs & passed_over & ~ignored) == 0;
@@ -52,11 +53,13 @@ struct Answer {
 struct Answers {
     std::shared_ptr<const MeshSurface> surface;  ///< held, so that it stays as it is
     std::vector<Answer> of;
+    unsigned pose = 0;  ///< counts the surfaces; older answers are of no use
 
     void begin_query(const std::shared_ptr<const MeshSurface>& asked) {
         if (asked == surface) return;
         surface = asked;
-        for (Answer& answer : of) answer.radius = -1.0;
+        if (++pose != 0) return;
+        for (Answer& answer : of) answer.radius = -1.0;  // the numbers start again
     }
 };
 
@@ -106,8 +109,8 @@ Answers& answers_for(SearchedMesh& mesh, size_t count) {
     return sets.front();
 }
 
-/// Searches for points in one pass, where they have not been answered yet; the faces that were
-/// nearest last are where the search begins. find_nearest() then reads the answers.
+/// Searches for points, several in one pass, where they have not been answered yet; the faces that
+/// were nearest last are where the search begins. find_nearest() then reads the answers.
 class SearchTogether {
  public:
     SearchTogether(const Target& target, ClosestFaceTree::Stack& stack)
@@ -116,10 +119,11 @@ class SearchTogether {
     void add(const Vec3& x, size_t point, double radius, LimbSet ignored) {
         const Answer& answer = m_target.answers->of[point];
         if (!x.allFinite() || (m_target.obstacle->solid & ignored) != 0 ||
-            answer.is_to(x, radius, ignored))
+            (answer.pose == m_target.answers->pose && answer.is_to(x, radius, ignored)))
             return;
         m_points[m_count] = point;
         m_queries[m_count++] = {x, radius, answer.hint, ignored};
+        if (m_count == ClosestFaceTree::packet) search();
     }
 
     void search() {
@@ -129,8 +133,8 @@ class SearchTogether {
         for (int k = 0; k < m_count; ++k) {
             const ClosestFaceTree::Query& query = m_queries[k];
             const int hint = hits[k].face >= 0 ? hits[k].face : query.hint;
-            m_target.answers->of[m_points[k]] = {hits[k], hint, query.x, query.radius,
-                                                 query.ignored};
+            m_target.answers->of[m_points[k]] = {
+                hits[k], hint, query.x, query.radius, query.ignored, m_target.answers->pose};
         }
         m_count = 0;
     }
@@ -344,7 +348,7 @@ struct Proximity::Impl {
     /// The rows of x to search for, in an order that suits; null: all of them.
     const std::vector<int>& rows_in_order(const Points& x, const std::vector<int>* rows) {
         if (rows && (!any_mesh() || rows->size() * few_rows < size_t(x.rows()))) return *rows;
-        if (!rows) return order_of(x);
+        if (!rows || rows->size() == size_t(x.rows())) return order_of(x);
         is_asked.assign(size_t(x.rows()), 0);
         for (const int i : *rows) is_asked[size_t(i)] = 1;
         ordered.clear();
@@ -381,11 +385,13 @@ struct Proximity::Impl {
         const auto radius = [&](int i) {
             return limits.radii ? std::min((*limits.radii)[i], largest) : largest;
         };
+        // Neighbours, which visit the same nodes; of those that are answered few may be left.
         constexpr int packet = ClosestFaceTree::packet;
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 16) if (threads > 1)
-        for (int first = 0; first < count; first += packet) {
+        const int block = packet * std::clamp(count / (16 * packet), 1, 16);
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 1) if (threads > 1)
+        for (int first = 0; first < count; first += block) {
             ClosestFaceTree::Stack& stack = stacks[size_t(omp_get_thread_num())];
-            const int last = std::min(first + packet, count);
+            const int last = std::min(first + block, count);
             for (const Target& target : targets) {
                 if (!target.surface) continue;
                 SearchTogether together(target, stack);
@@ -453,7 +459,7 @@ void Proximity::cover_rows(const Boundary& boundary, const SurfaceContacts& cont
     const int count = static_cast<int>(rows.size());
     covers.resize(rows.size());
     const int threads = m_impl->threads_for(count);
-#pragma omp parallel for num_threads(threads) schedule(dynamic, 64) if (threads > 1)
+#pragma omp parallel for num_threads(threads) schedule(dynamic, 32) if (threads > 1)
     for (int k = 0; k < count; ++k) {
         const int i = rows[size_t(k)];
         covers[size_t(k)] = m_impl->cover(contacts, i, end, ignored[size_t(i)],
