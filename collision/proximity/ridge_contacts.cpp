@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "collision/geometry/select_rows.h"
 #include "collision/proximity/direction.h"
 #include "collision/response/resolve.h"
 
@@ -14,6 +15,8 @@ constexpr double smooth = 0.9;
 // Skins that face each other are two bodies, or two limbs, and the cloth is pinched between them.
 constexpr double opposite = -0.5;
 constexpr double reach = 0.03;  // m: samples further from the surface get no contact
+
+constexpr int enough_edges = 4000, enough_samples = 10000;  // to be worth waking threads for
 
 bool in_reach(const SurfaceContacts& contacts, int vertex) {
     return contacts.has(vertex) && contacts.distance[vertex] < 2.0 * reach;
@@ -29,6 +32,7 @@ RidgeFinder::RidgeFinder(const Garment& garment)
     add_edges(garment.is_pinned());
     m_x.setZero(static_cast<Eigen::Index>(m_samples.size()), 3);
     m_rows.reserve(m_samples.size());
+    m_ignored.resize(m_samples.size());
     Proximity().query(m_x, Boundary(), m_near);  // gives the rows their size
 }
 
@@ -83,29 +87,30 @@ void RidgeFinder::add_edges(const std::vector<char>& pinned) {
 void RidgeFinder::find(Proximity& proximity, const Boundary& boundary, const Points& x,
                        SurfaceContacts& contacts, StepEnd chosen_at) {
     contacts.ridges.clear();
-    m_rows.clear();
     find_bent_edges(contacts, chosen_at);
-    for (size_t k = 0; k < m_samples.size(); ++k) {
-        if (!bends(m_samples[k])) continue;
-        const int row = static_cast<int>(k);
-        m_rows.push_back(row);
-        m_x.row(row).setZero();
-        for (size_t c = 0; c < 3; ++c)
-            m_x.row(row) += m_samples[k].weight[c] * x.row(vertex(m_samples[k], c));
-    }
+    select_rows(0, static_cast<int>(m_samples.size()), enough_samples, m_wanted, m_rows,
+                [&](int row) {
+                    if (!bends(m_samples[static_cast<size_t>(row)])) return false;
+                    place(row, boundary, x);
+                    return true;
+                });
     if (m_rows.empty()) return;
-    m_ignored.resize(m_samples.size());
-    for (const int row : m_rows) {
-        const Sample& sample = m_samples[static_cast<size_t>(row)];
-        LimbSet& ignored = m_ignored[static_cast<size_t>(row)] = 0;
-        for (size_t c = 0; c < 3; ++c)
-            if (sample.weight[c] > 0.0) ignored |= ignored_limbs(boundary, vertex(sample, c));
-    }
     proximity.query_rows(m_x, m_rows, boundary, m_near, chosen_at, {&m_ignored});
     for (const int row : m_rows) {
         if (!m_near.has(row) || !(m_near.distance[row] < reach)) continue;
         const RidgeContact found = ridge(row, chosen_at);
         if (agrees(found, contacts)) contacts.ridges.push_back(found);
+    }
+}
+
+/// Where a sample is, and which limbs it passes over.
+void RidgeFinder::place(int row, const Boundary& boundary, const Points& x) {
+    const Sample& sample = m_samples[static_cast<size_t>(row)];
+    LimbSet& ignored = m_ignored[static_cast<size_t>(row)] = 0;
+    m_x.row(row).setZero();
+    for (size_t c = 0; c < 3; ++c) {
+        m_x.row(row) += sample.weight[c] * x.row(vertex(sample, c));
+        if (sample.weight[c] > 0.0) ignored |= ignored_limbs(boundary, vertex(sample, c));
     }
 }
 
@@ -121,7 +126,10 @@ void RidgeFinder::find_bent_edges(const SurfaceContacts& contacts, StepEnd chose
     const Points& points = start ? contacts.point0 : contacts.point1;
     for (size_t i = 0; i < m_in_reach.size(); ++i)
         m_in_reach[i] = in_reach(contacts, static_cast<int>(i));
-    for (size_t edge = 0; edge < m_edges.size(); ++edge) {
+    const int edge_count = static_cast<int>(m_edges.size());
+#pragma omp parallel for if (edge_count >= enough_edges)
+    for (int at = 0; at < edge_count; ++at) {
+        const auto edge = static_cast<size_t>(at);
         const auto& [a, b] = m_edges[edge];
         m_bent[edge] = 0;
         if (!m_in_reach[static_cast<size_t>(a)] || !m_in_reach[static_cast<size_t>(b)]) continue;

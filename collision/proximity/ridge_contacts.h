@@ -40,6 +40,7 @@ class RidgeFinder {
     void add_edges(const std::vector<char>& pinned);
     void find_bent_edges(const SurfaceContacts& contacts, StepEnd chosen_at);
     bool bends(const Sample& sample) const;
+    void place(int row, const Boundary& boundary, const Points& x);
     bool agrees(const RidgeContact& ridge, const SurfaceContacts& contacts) const;
     RidgeContact ridge(int row, StepEnd chosen_at) const;
 
@@ -51,6 +52,7 @@ class RidgeFinder {
     std::vector<Sample> m_samples;                 ///< centres of faces, then midpoints of edges
     Points m_x;                                    ///< |samples| x 3 (m)
     std::vector<int> m_rows;
+    std::vector<char> m_wanted;      ///< scratch memory
     SurfaceContacts m_near;          ///< |samples|
     std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its corners
 };

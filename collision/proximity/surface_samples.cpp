@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "collision/geometry/select_rows.h"
 #include "collision/proximity/direction.h"
 
 namespace cloth {
@@ -40,6 +41,7 @@ SurfaceSamples::SurfaceSamples(const Garment& garment)
     m_distance.setZero(count);  // what is not movable is never deep
     m_parted.resize(static_cast<size_t>(count));
     m_unsure.resize(static_cast<size_t>(count));
+    m_ignored.resize(static_cast<size_t>(count));
     m_movable.resize(static_cast<size_t>(count));
     for (int sample = 0; sample < count; ++sample)
         for (const int vertex : corners(sample).vertex)
@@ -121,27 +123,26 @@ double SurfaceSamples::vouched_by_faces(int edge) const {
     return bound;
 }
 
-template <class Update>
-void SurfaceSamples::update_all(int first, int last, const Update& update) {
-#pragma omp parallel for if (last - first >= enough_samples)
-    for (int sample = first; sample < last; ++sample) update(sample);
+/// How far a sample is searched for, and what it passes over.
+void SurfaceSamples::limit_search(int sample, const Boundary& boundary) {
+    LimbSet ignored = 0;
+    for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
+    m_ignored[static_cast<size_t>(sample)] = ignored;
+    m_radii[sample] = beyond_doubt - m_distance[sample];
 }
 
 /// Searches for the nearest points of samples that may be deep.
+template <class IsUnsure>
 void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundary, int first,
-                                   int last) {
-    m_rows.clear();
-    for (int sample = first; sample < last; ++sample)
-        if (m_unsure[static_cast<size_t>(sample)]) m_rows.push_back(sample);
-    m_ignored.resize(static_cast<size_t>(m_x.rows()));
-    for (const int sample : m_rows) {
-        LimbSet& ignored = m_ignored[static_cast<size_t>(sample)] = 0;
-        for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
-    }
+                                   int last, const IsUnsure& is_unsure) {
+    select_rows(first, last, enough_samples, m_unsure, m_rows, [&](int sample) {
+        const bool unsure = is_unsure(sample);
+        if (unsure) limit_search(sample, boundary);
+        return unsure;
+    });
     QueryLimits limits;
     limits.ignored = &m_ignored;
     limits.radii = &m_radii;
-    for (const int sample : m_rows) m_radii[sample] = beyond_doubt - m_distance[sample];
     proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
     for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
 }
@@ -150,25 +151,22 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
                                const SurfaceContacts& contacts, double depth,
                                const std::vector<char>* changed) {
     m_radius = proximity.settings().radius;
-    const auto update = [&](int sample) {
+    const auto is_unsure = [&](int sample) {
         const auto k = static_cast<size_t>(sample);
-        m_unsure[k] = has_changed(sample, changed);
-        if (!m_unsure[k]) return;
+        if (!has_changed(sample, changed)) return false;
         m_x.row(sample) = corners(sample).position(x);
         m_parted[k] = skins_part(sample, contacts);
         m_distance[sample] =
             m_parted[k] ? -m_radius : vouched_by_vertices(sample, x, contacts.clearance);
-        m_unsure[k] = m_distance[sample] < -depth;
+        return m_distance[sample] < -depth;
     };
-    update_all(0, face_count(), update);
-    search_unsure(proximity, boundary, 0, face_count());
-    update_all(face_count(), count(), [&](int sample) {
-        update(sample);
-        if (!m_unsure[static_cast<size_t>(sample)] || m_parted[static_cast<size_t>(sample)]) return;
+    search_unsure(proximity, boundary, 0, face_count(), is_unsure);
+    search_unsure(proximity, boundary, face_count(), count(), [&](int sample) {
+        if (!is_unsure(sample)) return false;
+        if (m_parted[static_cast<size_t>(sample)]) return true;
         m_distance[sample] = std::max(m_distance[sample], vouched_by_faces(sample - face_count()));
-        m_unsure[static_cast<size_t>(sample)] = m_distance[sample] < -depth;
+        return m_distance[sample] < -depth;
     });
-    search_unsure(proximity, boundary, face_count(), count());
     m_deep.clear();
     for (int sample = 0; sample < m_x.rows(); ++sample)
         if (m_distance[sample] < -depth) m_deep.push_back(sample);

@@ -59,9 +59,10 @@ class SurfaceSamples {
 
  private:
     int face_count() const { return static_cast<int>(m_faces.rows()); }
-    template <class Update>
-    static void update_all(int first, int last, const Update& update);
-    void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last);
+    template <class IsUnsure>
+    void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last,
+                       const IsUnsure& is_unsure);
+    void limit_search(int sample, const Boundary& boundary);
     bool has_changed(int sample, const std::vector<char>* changed) const;
     bool skins_part(int sample, const SurfaceContacts& contacts) const;
     double vouched_by_vertices(int sample, const Points& x, const VectorX& clearance) const;
@@ -76,7 +77,7 @@ class SurfaceSamples {
     std::vector<int> m_rows, m_deep;
     std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its vertices
     std::vector<char> m_parted;      ///< |samples|: its vertices stand on skins that part
-    std::vector<char> m_unsure;      ///< |samples|: it may be deeper than asked for
+    std::vector<char> m_unsure;      ///< scratch memory
     std::vector<char> m_movable;     ///< |samples|: not all of its vertices are pinned
     double m_radius = 0.0;
 };

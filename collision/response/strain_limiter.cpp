@@ -5,6 +5,7 @@
 namespace cloth {
 
 constexpr char rings = 2;
+constexpr Eigen::Index enough_edges = 4000;  // to be worth waking threads for
 
 StrainLimiter::StrainLimiter(const Garment& garment, double growth)
     : m_growth(growth),
@@ -20,6 +21,7 @@ StrainLimiter::StrainLimiter(const Garment& garment, double growth)
 }
 
 void StrainLimiter::begin_frame(const Points& x) {
+#pragma omp parallel for if (m_limit.size() >= enough_edges)
     for (Eigen::Index e = 0; e < m_limit.size(); ++e) {
         const auto& [a, b] = m_edges[static_cast<size_t>(e)];
         m_limit[e] = (1.0 + m_growth) * std::max(m_rest[e], (x.row(b) - x.row(a)).norm());
@@ -49,6 +51,7 @@ void StrainLimiter::add_planes(const Points& x, PlanePush& push) {
 
 double StrainLimiter::excess(const Points& x) const {
     double worst = 0.0;
+#pragma omp parallel for reduction(max : worst) if (m_limit.size() >= enough_edges)
     for (Eigen::Index e = 0; e < m_limit.size(); ++e) {
         const auto& [a, b] = m_edges[static_cast<size_t>(e)];
         worst = std::max(worst, (x.row(b) - x.row(a)).norm() - m_limit[e]);
