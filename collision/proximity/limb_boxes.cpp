@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 namespace cloth {
@@ -10,13 +11,24 @@ namespace {
 constexpr size_t most_meshes = 16;
 constexpr float unbounded = std::numeric_limits<float>::infinity();
 
+/// std::nextafter(x, -unbounded), which takes a call.
+float next_below(float x) {
+    if (!(x > -unbounded)) return x;
+    if (x == 0.0f) return -std::numeric_limits<float>::denorm_min();
+    std::int32_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
+    bits += x > 0.0f ? -1 : 1;
+    std::memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
 /// At least as far out as the number that it was rounded from.
 float rounded_down(double x) {
-    return std::nextafter(static_cast<float>(x), -unbounded);
+    return next_below(static_cast<float>(x));
 }
 
 float rounded_up(double x) {
-    return std::nextafter(static_cast<float>(x), unbounded);
+    return -next_below(-static_cast<float>(x));
 }
 
 }  // namespace
@@ -46,8 +58,8 @@ void LimbBoxes::fit(const Boundary& boundary, const std::vector<char>& has_limbs
         if (!has_limbs[k]) continue;
         const Obstacle& obstacle = boundary.obstacles[k];
         const Mesh& mesh = known(obstacle);
-        for (size_t limb = 0; limb < max_limbs; ++limb)
-            fit(mesh.vertices[limb], end == StepEnd::start ? obstacle.x0 : obstacle.x1, limb);
+        const Points& x = end == StepEnd::start ? obstacle.x0 : obstacle.x1;
+        for (size_t limb = 0; limb < max_limbs; ++limb) fit(mesh.vertices[limb], x, limb);
     }
 }
 
@@ -58,8 +70,8 @@ void LimbBoxes::fit(const std::vector<int>& vertices, const Points& x, size_t li
     for (const int i : vertices)
         for (int k = 0; k < 3; ++k) {
             const double at = x(i, k);
-            if (at < low[k]) low[k] = at;
-            if (at > high[k]) high[k] = at;
+            low[k] = at < low[k] ? at : low[k];  // no branches
+            high[k] = at > high[k] ? at : high[k];
         }
     for (size_t k = 0; k < 3; ++k) {
         const auto axis = static_cast<Eigen::Index>(k);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "collision/geometry/select_rows.h"
 #include "data/core/check_range.h"
 
 namespace cloth {
@@ -10,6 +11,7 @@ namespace {
 
 // m: limbs are open where they are joined, so a point outside of the box may count as inside
 constexpr double around_limbs = 0.02;
+constexpr int enough_rows = 1000;  // to be worth waking threads for
 
 LimbSet only(size_t limb) {
     return LimbSet(1) << limb;
@@ -90,6 +92,9 @@ void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
         m_ignored.assign(count, 0);
         m_without.assign(count, 0);
         m_passed.assign(count, 0);
+        m_found_joined.assign(count, 0);
+        for (std::vector<int>* rows : {&m_rows, &m_next, &m_uncovered}) rows->reserve(count);
+        m_covers.reserve(count);
         m_proximity.query(x, boundary, m_near);
         m_near_own = m_near;
     }
@@ -121,15 +126,17 @@ bool LimbOverlap::is_clear(int vertex, LimbSet limb, StepEnd end) {
     return (own_point - point).dot((start ? m_near.normal0 : m_near.normal1).row(vertex)) > 0.0;
 }
 
-/// Marks the limbs that are not clear of vertices which ignore them.
-void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
+/// Marks those of the limbs that are not clear of vertices which ignore them.
+void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end, LimbSet limbs) {
     for (size_t limb = 0; limb < max_limbs; ++limb) {
+        if ((limbs & only(limb)) == 0) continue;
         m_rows.clear();
-        for (size_t i = 0; i < m_own.size(); ++i)
-            if ((m_ignored[i] & ~m_keep[i] & only(limb)) != 0) {
-                m_rows.push_back(static_cast<int>(i));
-                m_without[i] = ~only(limb);
-            }
+        for (const int i : m_next) {
+            const auto vertex = static_cast<size_t>(i);
+            if ((m_ignored[vertex] & ~m_keep[vertex] & only(limb)) == 0) continue;
+            m_rows.push_back(i);
+            m_without[vertex] = ~only(limb);
+        }
         if (m_rows.empty()) continue;
         m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without});
         for (const int i : m_rows)
@@ -138,17 +145,22 @@ void LimbOverlap::keep(const Boundary& boundary, const Points& x, StepEnd end) {
     }
 }
 
-bool LimbOverlap::ignores_nothing() const {
-    return std::all_of(m_ignored.begin(), m_ignored.end(),
-                       [](LimbSet limbs) { return limbs == 0; });
+LimbSet LimbOverlap::ignored_by_any() const {
+    LimbSet any = 0;
+    for (const LimbSet limbs : m_ignored) any |= limbs;
+    return any;
 }
 
 /// Lets vertices touch what they are clear of, at both ends; m_near_own is to be of the start.
 void LimbOverlap::release(const Boundary& boundary, const Points& x0, const Points& x1) {
-    if (ignores_nothing()) return;
+    const LimbSet limbs = ignored_by_any();
+    if (limbs == 0) return;
     m_keep.assign(m_own.size(), 0);
-    keep(boundary, x0, StepEnd::start);
-    keep(boundary, x1, StepEnd::end);
+    m_next.clear();
+    for (size_t i = 0; i < m_own.size(); ++i)
+        if (m_ignored[i] != 0) m_next.push_back(static_cast<int>(i));
+    keep(boundary, x0, StepEnd::start, limbs);
+    keep(boundary, x1, StepEnd::end, limbs);
     LimbSet kept = 0;
     for (size_t i = 0; i < m_own.size(); ++i) {
         m_ignored[i] &= m_keep[i];
@@ -166,11 +178,19 @@ void LimbOverlap::select_owners() {
 
 /// Those of them that are within reach (m) of the box of a limb that they do not pass over.
 void LimbOverlap::select_near(const Points& x, double reach, const std::vector<LimbSet>& passed) {
-    select_owners();
-    const auto is_far = [&](int i) {
-        return (m_boxes.near(x.row(i), reach) & ~passed[static_cast<size_t>(i)]) == 0;
+    const auto is_near = [&](int i) {
+        const auto vertex = static_cast<size_t>(i);
+        return m_own[vertex] != 0 && (m_boxes.near(x.row(i), reach) & ~passed[vertex]) != 0;
     };
-    m_rows.erase(std::remove_if(m_rows.begin(), m_rows.end(), is_far), m_rows.end());
+    select_rows(0, static_cast<int>(m_own.size()), enough_rows, m_wanted, m_rows, is_near);
+}
+
+/// The limbs in whose boxes there may be something over the surface point of a row. The boxes are
+/// those of this end.
+LimbSet LimbOverlap::above(const SurfaceContacts& contacts, int row, StepEnd end) const {
+    const bool start = end == StepEnd::start;
+    return m_boxes.along((start ? contacts.point0 : contacts.point1).row(row),
+                         (start ? contacts.normal0 : contacts.normal1).row(row), Cover::farthest);
 }
 
 /// Looks at the limbs within reach of each vertex, one after the other, for skin inside another.
@@ -179,16 +199,37 @@ void LimbOverlap::find_covered(const Boundary& boundary, const Points& x, StepEn
     select_near(x, m_settings.reach, m_without);
     for (Proximity* searches = &m_other_proximity; !m_rows.empty(); searches = &m_proximity) {
         searches->query_rows(x, m_rows, boundary, m_near, end, {&m_without, m_settings.reach});
-        m_next.clear();
-        for (const int i : m_rows) {
-            const LimbSet limb = limb_of(boundary, i) & ~m_without[static_cast<size_t>(i)];
-            if (limb == 0) continue;
-            m_without[static_cast<size_t>(i)] |= limb;
-            m_next.push_back(i);
-            if (searches->cover(m_near, i, end, joined(limb))) m_covered |= limb;
-        }
-        m_rows.swap(m_next);
+        pass_over_found(boundary);
+        mark_covered(boundary, end);
     }
+}
+
+/// Keeps the rows for which a limb was found, to be passed over from now on.
+void LimbOverlap::pass_over_found(const Boundary& boundary) {
+    m_next.clear();
+    for (const int i : m_rows) {
+        const auto vertex = static_cast<size_t>(i);
+        const LimbSet limb = limb_of(boundary, i) & ~m_without[vertex];
+        if (limb == 0) continue;
+        m_without[vertex] |= limb;
+        m_found_joined[vertex] = joined(limb);
+        m_next.push_back(i);
+    }
+    m_rows.swap(m_next);
+}
+
+/// Marks the limbs whose skin in m_near is inside another limb. Those that are known to be covered
+/// are not looked at, nor is skin over which there is no box.
+void LimbOverlap::mark_covered(const Boundary& boundary, StepEnd end) {
+    m_uncovered = m_rows;
+    keep_rows(enough_rows, m_wanted, m_uncovered, [&](int i) {
+        return (limb_of(boundary, i) & ~m_covered) != 0 &&
+               (above(m_near, i, end) & ~m_found_joined[static_cast<size_t>(i)]) != 0;
+    });
+    if (m_uncovered.empty()) return;
+    m_proximity.cover_rows(boundary, m_near, m_uncovered, end, m_found_joined, m_covers);
+    for (size_t k = 0; k < m_uncovered.size(); ++k)
+        if (m_covers[k]) m_covered |= limb_of(boundary, m_uncovered[k]);
 }
 
 void LimbOverlap::ignore_covered() {
@@ -206,15 +247,10 @@ void LimbOverlap::find_own_skin(Proximity& searches, const Boundary& boundary, c
 /// Finds what lies over that skin of limbs that are joined to it; rows where that cannot be are
 /// dropped.
 void LimbOverlap::find_covers(const Boundary& boundary, StepEnd end) {
-    const bool start = end == StepEnd::start;
-    const Points& points = start ? m_near_own.point0 : m_near_own.point1;
-    const Points& normals = start ? m_near_own.normal0 : m_near_own.normal1;
-    const auto is_clear = [&](int i) {
-        if (!m_near_own.has(i)) return true;
-        const LimbSet above = m_boxes.along(points.row(i), normals.row(i), Cover::farthest);
-        return (above & ~m_passed[static_cast<size_t>(i)]) == 0;
-    };
-    m_rows.erase(std::remove_if(m_rows.begin(), m_rows.end(), is_clear), m_rows.end());
+    keep_rows(enough_rows, m_wanted, m_rows, [&](int i) {
+        return m_near_own.has(i) &&
+               (above(m_near_own, i, end) & ~m_passed[static_cast<size_t>(i)]) != 0;
+    });
     m_proximity.cover_rows(boundary, m_near_own, m_rows, end, m_passed, m_covers);
 }
 
@@ -294,7 +330,9 @@ IgnoredDepth LimbOverlap::measure_ignored(const Points& x, const std::vector<cha
     obstacles.erase(std::remove_if(obstacles.begin(), obstacles.end(), other), obstacles.end());
     m_has_limbs.assign(obstacles.size(), 1);
     m_depth = VectorX::Zero(x.rows());
+    const LimbSet ignored = ignored_by_any();
     for (size_t limb = 0; limb < max_limbs; ++limb) {
+        if ((ignored & only(limb)) == 0) continue;
         select_inside_candidates(only(limb), left_out);
         if (m_rows.empty()) continue;
         m_proximity.query_rows(x, m_rows, m_boundary, m_near, StepEnd::end, {&m_without});

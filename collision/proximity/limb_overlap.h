@@ -73,9 +73,11 @@ class LimbOverlap {
     void add_joints(const Obstacle& obstacle);
     void find_own_limbs(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);
-    void keep(const Boundary& boundary, const Points& x, StepEnd end);
+    void keep(const Boundary& boundary, const Points& x, StepEnd end, LimbSet limbs);
     bool is_clear(int vertex, LimbSet limb, StepEnd end);
     void find_covered(const Boundary& boundary, const Points& x, StepEnd end);
+    void pass_over_found(const Boundary& boundary);
+    void mark_covered(const Boundary& boundary, StepEnd end);
     void ignore_covered();
     void select_owners();
     void select_near(const Points& x, double reach, const std::vector<LimbSet>& passed);
@@ -84,7 +86,9 @@ class LimbOverlap {
     void ignore_folded_at_start(const Boundary& boundary, const Points& x);
     void ignore_folded_at_end(const Boundary& boundary, const Points& x);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
-    bool ignores_nothing() const;
+    LimbSet above(const SurfaceContacts& contacts, int row, StepEnd end) const;
+    LimbSet ignored_by_any() const;
+    bool ignores_nothing() const { return ignored_by_any() == 0; }
     void select_inside_candidates(LimbSet limb, const std::vector<char>& left_out);
     LimbSet joined(LimbSet limb) const;
     LimbSet limb_at(const Boundary& boundary, int obstacle, int face) const;
@@ -107,12 +111,14 @@ class LimbOverlap {
     std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over
     std::vector<LimbSet> m_passed;    ///< |V|: limbs that do not cover the vertex's own
+    std::vector<LimbSet> m_found_joined;  ///< |V|: limbs that are joined to the one in m_near
     std::vector<std::optional<Cover>> m_covers;  ///< over the own limbs of m_rows
     SurfaceContacts m_near, m_near_own;
-    std::vector<int> m_rows, m_next;
-    VectorX m_depth;      ///< |V| (m): inside limbs that are ignored
-    Points m_x;           ///< |V| x 3 (m): where the vertices are heading
-    Boundary m_boundary;  ///< of the last step, if any vertex ignored a limb
+    std::vector<int> m_rows, m_next, m_uncovered;
+    std::vector<char> m_wanted;  ///< scratch memory
+    VectorX m_depth;             ///< |V| (m): inside limbs that are ignored
+    Points m_x;                  ///< |V| x 3 (m): where the vertices are heading
+    Boundary m_boundary;         ///< of the last step, if any vertex ignored a limb
 };
 
 }  // namespace cloth

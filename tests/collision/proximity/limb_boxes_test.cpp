@@ -76,6 +76,48 @@ TEST(LimbBoxes, AreNearPointsAndAlongRaysAtEitherEnd) {
     EXPECT_GT(met, 300);
 }
 
+constexpr float far = std::numeric_limits<float>::infinity();
+
+/// By std::nextafter(), one limb after the other.
+LimbSet slow_near(const Obstacle& body, const Vec3& x, double reach) {
+    const auto down = [](double at) { return std::nextafter(static_cast<float>(at), -far); };
+    const auto up = [](double at) { return std::nextafter(static_cast<float>(at), far); };
+    LimbSet found = 0;
+    for (int limb = 0; limb < max_limbs; ++limb) {
+        bool overlap = true;
+        for (int k = 0; k < 3; ++k) {
+            double low = far, high = -far;
+            for (Eigen::Index f = 0; f < body.faces->rows(); ++f)
+                for (int c = 0; c < 3 && (*body.limbs)[size_t(f)] == limb; ++c) {
+                    low = std::min(low, body.x0((*body.faces)(f, c), k));
+                    high = std::max(high, body.x0((*body.faces)(f, c), k));
+                }
+            overlap &=
+                low <= high && down(low) <= up(x[k] + reach) && up(high) >= down(x[k] - reach);
+        }
+        if (overlap) found |= LimbSet(1) << limb;
+    }
+    return found;
+}
+
+TEST(LimbBoxes, RoundAsNextafterDoes) {
+    std::mt19937 random(9);
+    Obstacle body = slices(random);
+    for (const double scale : {1.0, 1e-40, 0.0, 1e38}) {
+        body.x0 = scale * mesh_obstacle(roughened(icosphere(3), 0.2, 5)).x0;
+        LimbBoxes boxes;
+        boxes.fit(boundary_of({body}), {1}, StepEnd::start);
+        for (int k = 0; k < 60; ++k) {  // around corners of the boxes, off by single steps
+            Vec3 x = body.x0.row(Eigen::Index(random() % size_t(body.x0.rows())));
+            for (int axis = 0; axis < 3; ++axis)
+                for (int step = int(random() % 5); step > 0; --step)
+                    x[axis] = std::nextafter(static_cast<float>(x[axis]), k % 2 ? far : -far);
+            if (k % 10 == 0) x[k % 3] = k % 4 ? far : -far;
+            EXPECT_EQ(boxes.near(x, 0.0), slow_near(body, x, 0.0));
+        }
+    }
+}
+
 TEST(LimbBoxes, CopeWithWhatComesAndGoesAndWithBadMeshes) {
     std::mt19937 random(4);
     Obstacle bad = slices(random), moving = slices(random);
