@@ -1,5 +1,7 @@
 #include "collision/proximity/closest_face_tree.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -134,14 +136,19 @@ void ClosestFaceTree::localize() {
     }
 }
 
-/// Children come after their parents, so a pass from the back is bottom-up. What is below the nodes
-/// of one level is fitted first, by several threads.
+/// Children come after their parents, so one pass from the back is bottom-up. Several threads first
+/// fit what is below the nodes of one level.
 void ClosestFaceTree::fit_nodes() {
+    const bool share = m_faces->rows() >= enough_faces && omp_get_max_threads() > 1;
+    if (share) fit_below_middle();
+    for (size_t i = share ? m_middle[0] : m_nodes.size(); i-- > 0;) fit_slots(m_nodes[i]);
+}
+
+void ClosestFaceTree::fit_below_middle() {
     constexpr int together = 4;
     const int first = static_cast<int>(m_middle[0]), end = static_cast<int>(m_middle[1]);
-#pragma omp parallel for schedule(dynamic, 1) if (m_faces->rows() >= enough_faces)
+#pragma omp parallel for schedule(dynamic, 1)
     for (int i = first; i < end; i += together) fit_from_below(i, std::min(i + together, end));
-    for (size_t i = m_middle[0]; i-- > 0;) fit_slots(m_nodes[i]);
 }
 
 /// Nodes of one level, which follow each other, and all below: their children do so, too.

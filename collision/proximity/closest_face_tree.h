@@ -98,6 +98,7 @@ class ClosestFaceTree {
     void mark_limbs();
     void localize();
     void fit_nodes();
+    void fit_below_middle();
     void fit_from_below(int first, int end);
     void fit_slots(Node& node) const;
     void fit_leaf(Node& node, int slot, int face) const;
