@@ -120,8 +120,9 @@ void ContactHessian::linearise(const IncrementalPotential& potential, const Poin
         const FrictionEnergy::Slider& slider = friction.sliders()[m_slider_index[k]];
         const Vec3 motion = x.row(slider.vertex).transpose() - slider.stick;
         const Vec3 slip = motion - slider.normal.dot(motion) * slider.normal;
-        m_sliders[k].stiffness =
-            slider.force / std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
+        const double smooth = std::sqrt(friction.slip() * friction.slip() + slip.squaredNorm());
+        m_sliders[k].stiffness = slider.force / smooth;
+        m_sliders[k].yielding = std::sqrt(m_sliders[k].stiffness) / smooth * slip;
     }
     const LayerFriction& layers = potential.layer_friction();
     for (size_t k = 0; k < m_layer_sliders.size(); ++k) {
@@ -181,6 +182,15 @@ void ContactHessian::Block::add(const Vec3& n, double along, double across) {
     zz += scaled[2] * n[2] + across;
 }
 
+void ContactHessian::Block::subtract(const Vec3& v) {
+    xx -= v[0] * v[0];
+    xy -= v[0] * v[1];
+    xz -= v[0] * v[2];
+    yy -= v[1] * v[1];
+    yz -= v[1] * v[2];
+    zz -= v[2] * v[2];
+}
+
 void ContactHessian::Block::add(const Eigen::Matrix3d& symmetric) {
     xx += symmetric(0, 0);
     xy += symmetric(0, 1);
@@ -198,8 +208,10 @@ void ContactHessian::gather_blocks() {
     };
     auto slider = m_sliders.begin();
     const auto add_sliders = [&](int end) {
-        for (; slider != m_sliders.end() && slider->row < end; ++slider)
+        for (; slider != m_sliders.end() && slider->row < end; ++slider) {
             at(slider->row).add(slider->normal, 0.0, slider->stiffness);
+            at(slider->row).subtract(slider->yielding);
+        }
     };
     for (const Contact& contact : m_contacts) {
         if (!(contact.stiffness > 0.0)) continue;

@@ -14,7 +14,7 @@ namespace cloth {
 ///
 ///     contact    6 w depth n n'                         depth = eps - d > 0
 ///     ridge      the same, shared out over the corners of a face
-///     friction   mu N / sqrt(s^2 + |u|^2) (I - n n')
+///     friction   mu N / q (I - n n' - u u' / q^2),  q = sqrt(s^2 + |u|^2)
 ///
 /// Contact is flat at depth 0, where the starting guess leaves the vertices, so the tangent
 /// stiffness alone lets the next step fall through the surface. Two remedies: vertices that a plain
@@ -84,7 +84,8 @@ class ContactHessian {
     struct Slider {
         int row;
         Vec3 normal;
-        double stiffness = 0.0;  ///< (N/m)
+        double stiffness = 0.0;        ///< across the slip (N/m)
+        Vec3 yielding = Vec3::Zero();  ///< y: along the slip it is less, by y y'
     };
     struct LayerSlider {
         std::array<int, 4> row;        ///< 0 for a pin
@@ -113,6 +114,8 @@ class ContactHessian {
         /// Adds across I + (along - across) n n'.
         void add(const Vec3& n, double along, double across);
         void add(const Eigen::Matrix3d& symmetric);
+        /// Subtracts v v'.
+        void subtract(const Vec3& v);
     };
     /// Those of the self-contacts that have a stiffness, packed: they are gone through twice in
     /// each iteration of a solve. Single precision changes the direction of a step by a rounding.
