@@ -13,7 +13,7 @@ namespace {
 
 StepperFactory quasi_newton(int iterations) {
     ClothSettings settings;
-    settings.step.quasi_newton = IterationLimits::exactly(iterations);
+    settings.step = StepSettings::whole(IterationLimits::exactly(iterations));
     settings.guard.iterations.iterations = iterations;
     return [settings](const Garment& garment) { return make_cloth(garment, settings); };
 }
@@ -42,9 +42,12 @@ StepperFactory network(const std::string& name, const std::string& folder) {
     const NetworkName wanted(name);
     if (wanted.torch) throw UsageError("solver " + name + ": here networks run in the engine only");
     ClothSettings settings;
-    if (!wanted.as_shipped)
-        settings.step.quasi_newton =
-            IterationLimits::exactly(whole_number("solver " + name, wanted.refine, 0, 100));
+    const std::string prefix = wanted.variant + "+";
+    if (const auto small = small_steps_named(prefix + wanted.refine, prefix))
+        settings.step = *small;
+    else if (!wanted.as_shipped)
+        settings.step = StepSettings::whole(
+            IterationLimits::exactly(whole_number("solver " + name, wanted.refine, 0, 100)));
     settings.weights = std::make_shared<const EngineWeights>(
         Weights::load(weights_file(wanted.variant, folder)),
         wanted.bfloat16 ? Precision::bfloat16 : Precision::float32);

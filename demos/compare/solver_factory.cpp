@@ -88,13 +88,15 @@ std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonSce
     ClothStepperSettings settings;
     std::string plain = name;
     take_integrator(plain);
-    if (const auto small = small_steps_named(plain)) {
+    if (plain == "quasi-newton") {
+        settings.step = StepSettings::whole();
+    } else if (const auto small = small_steps_named(plain)) {
         settings.step = *small;
-    } else if (plain != "quasi-newton") {
+    } else {
         const size_t cross = plain.find('x');
         const std::string first = plain.substr(0, cross);
-        settings.step.quasi_newton =
-            IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000));
+        settings.step = StepSettings::whole(
+            IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000)));
         settings.guard.max_substeps = 1;
         if (cross != std::string::npos)
             settings.substeps = iterations_of(plain, first + "x", 1, 64);
@@ -168,13 +170,20 @@ std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weig
 std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
     ClothStepperSettings learned;
-    set_scene(name, scene, learned);
-    const NetworkName network(name);
+    std::string plain = name;
+    take_integrator(plain);
+    const NetworkName network(plain);
     if (!network.as_shipped) {  // NAME+K: exactly that in every frame
-        learned.step.quasi_newton = IterationLimits::exactly(
-            iterations_of(network.variant + "+" + network.refine, network.variant + "+", 0, 100));
-        learned.guard.max_substeps = 1;
+        const std::string prefix = network.variant + "+", whole = prefix + network.refine;
+        if (const auto small = small_steps_named(whole, prefix)) {
+            learned.step = *small;
+        } else {
+            learned.step =
+                StepSettings::whole(IterationLimits::exactly(iterations_of(whole, prefix, 0, 100)));
+            learned.guard.max_substeps = 1;
+        }
     }
+    set_scene(name, scene, learned);
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
@@ -224,13 +233,13 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
 }
 
-std::optional<StepSettings> small_steps_named(const std::string& solver) {
-    const std::string prefix = "quasi-newton-";
+std::optional<StepSettings> small_steps_named(const std::string& solver,
+                                              const std::string& prefix) {
     const size_t mark = solver.find('s', prefix.size());
     if (!starts_with(solver, prefix) || mark == std::string::npos) return std::nullopt;
     const std::string first = solver.substr(0, mark);
-    const int count = iterations_of(solver, first + "s", 1, 64);
-    return StepSettings::in_small_steps(count, iterations_of(first, prefix, 0, 1000));
+    const int rate = iterations_of(solver, first + "s", 1, 9999);
+    return StepSettings::in_small_steps(rate, iterations_of(first, prefix, 0, 1000));
 }
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,

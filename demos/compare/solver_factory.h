@@ -24,9 +24,10 @@ struct SolverSettings {
     TorchMaker torch = nullptr;  ///< empty: LibTorch is not built in
 };
 
-/// Of "quasi-newton-KsS", S small steps of K iterations; none: another name. @throws UsageError for
-/// a number out of range
-std::optional<StepSettings> small_steps_named(const std::string& solver);
+/// Of prefix + "KsR", R small steps a second of K iterations each; none: another name.
+/// @throws UsageError for a number out of range
+std::optional<StepSettings> small_steps_named(const std::string& solver,
+                                              const std::string& prefix = "quasi-newton-");
 
 /// Makes the solver called `name` for the scene's garment:
 ///

@@ -57,7 +57,7 @@ DataSet motions(const std::string& name, const std::string& options) {
             figures + name + ".json",
             "build/release/demos/hard_cases"
             " --motions ../shared/data/motions/validation,../shared/data/motions/train"
-            " --steppers reference,quasi-newton,small,quasi-newton-3s4" +
+            " --steppers reference,quasi-newton,small,quasi-newton-3s120" +
                 options + " --no-pictures --out OUT",
             "hard_cases.json",
             {},
@@ -89,8 +89,9 @@ std::vector<DataSet> data_sets() {
         {"which_solver",
          figures + "which_solver.json",
          "build/release/demos/speed_error --scene all --frames 30 --relative-to xpbd-40 --solvers "
-         "xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-2s2,quasi-newton-2s4,"
-         "quasi-newton-3s4,quasi-newton-5s4,quasi-newton-3s4-bdf2,small,small+3 --out OUT",
+         "xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-2s60,quasi-newton-"
+         "2s120,"
+         "quasi-newton-3s120,quasi-newton-5s120,quasi-newton-3s120-bdf2,small,small+3 --out OUT",
          "speed_error.json",
          {},
          {}},
@@ -105,7 +106,7 @@ std::vector<DataSet> data_sets() {
          figures + "stiff.json",
          "build/release/demos/speed_error --scene all --fabric real --frames 30 --relative-to "
          "xpbd-40 --solvers bullet-fine,xpbd-40,xpbd-100,quasi-newton-10,quasi-newton,"
-         "quasi-newton-bdf2,quasi-newton-3s4 --out OUT",
+         "quasi-newton-bdf2,quasi-newton-3s120 --out OUT",
          "speed_error.json",
          {},
          {}},
@@ -147,7 +148,7 @@ std::vector<DataSet> data_sets() {
         {"hard_cases",
          figures + "hard_cases.json",
          "build/release/demos/hard_cases"
-         " --steppers quasi-newton,quasi-newton-bdf2,quasi-newton-3s4,small,small+3,fast,fast+0,"
+         " --steppers quasi-newton,quasi-newton-bdf2,quasi-newton-3s120,small,small+3,fast,fast+0,"
          "xpbd-40 "
          "--no-pictures --out OUT",
          "hard_cases.json",

@@ -121,7 +121,7 @@ MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
 MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
     static const std::pair<const char*, const char*> choices[] = {
         {"xpbd-40", "a body carries the cloth, and nothing else fits into the time"},
-        {"quasi-newton-3s4",
+        {"quasi-newton-3s120",
          "in general, in a game above all: four small steps with three iterations each"},
         {"quasi-newton",
          "each step should be solved well: iterations for as long as they gain. Holds every hard "

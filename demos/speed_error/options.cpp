@@ -106,7 +106,7 @@ std::vector<std::string> default_solvers(const std::vector<std::string>& network
         solvers.push_back(std::string("xpbd-") + substeps);
     for (const char* setting : {"-1", "-3", "-10", "", "-30", "-3-bdf2", "-10-bdf2", "-bdf2"})
         solvers.push_back(std::string("quasi-newton") + setting);
-    for (const char* setting : {"2s2", "2s4", "3s4", "5s4", "3s4-bdf2"})
+    for (const char* setting : {"2s60", "2s120", "3s120", "5s120", "3s120-bdf2"})
         solvers.push_back(std::string("quasi-newton-") + setting);
     for (const char* solver : {"newton-1", "newton-3", "newton-10", "reference"})
         solvers.push_back(solver);

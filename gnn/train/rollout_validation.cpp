@@ -197,7 +197,7 @@ std::optional<std::vector<RolloutResult>> RolloutValidation::measure(
         for (const int iterations : m_settings.iterations) {
             ClothSettings settings;
             settings.weights = packed;
-            settings.step.quasi_newton = IterationLimits::exactly(iterations);
+            settings.step = StepSettings::whole(IterationLimits::exactly(iterations));
             settings.step.proximity.threads = m_settings.threads;
             settings.engine.threads = m_settings.threads;
             settings.guard = GuardSettings::limbs_alone();

@@ -318,7 +318,7 @@ void network(benchmark::State& state) {
 template <bool learned, int iterations>
 void whole_step(benchmark::State& state) {
     ClothSettings settings;
-    settings.step.quasi_newton = IterationLimits::exactly(iterations);
+    settings.step = StepSettings::whole(IterationLimits::exactly(iterations));
     settings.guard.max_substeps = 1;
     if (learned)
         settings.weights = std::make_shared<const EngineWeights>(

@@ -150,7 +150,7 @@ Outcome run(unsigned number, double seconds, double whip, const Steps& steps,
     MeteredSolver solver(
         [=](const Garment& garment) -> std::unique_ptr<Stepper> {
             ClothStepperSettings stepping;
-            if (steps.small) stepping.step = StepSettings::in_small_steps();
+            if (!steps.small) stepping.step = StepSettings::whole();
             auto stepper = std::make_unique<ClothStepper>(garment, stepping);
             if (steps.fixed == 0.0) return stepper;
             return std::make_unique<Ticking>(std::move(stepper), steps.fixed, true);

@@ -268,15 +268,16 @@ TEST_F(GuideSnippets, Solvers) {
         return cloth::make_cloth(garment, settings);
     };
     const auto physics = [](const cloth::Garment& garment) {
-        return cloth::make_cloth(garment);  // quasi-newton
+        return cloth::make_cloth(garment);  // quasi-newton-3s120
     };
-    const auto small_steps = [](const cloth::Garment& garment) {  // quasi-newton-3s4
+    const auto whole_steps = [](const cloth::Garment& garment) {  // quasi-newton
         cloth::ClothSettings settings;
-        settings.step = cloth::StepSettings::in_small_steps();
+        settings.step = cloth::StepSettings::whole();
         return cloth::make_cloth(garment, settings);
     };
     const auto bdf2 = [](const cloth::Garment& garment) {  // quasi-newton-bdf2
         cloth::ClothSettings settings;
+        settings.step = cloth::StepSettings::whole();
         settings.step.potential.integrator = cloth::Integrator::bdf2;
         return cloth::make_cloth(garment, settings);
     };
@@ -294,7 +295,7 @@ TEST_F(GuideSnippets, Solvers) {
     const auto small_3 = [&](const cloth::Garment& garment) {  // small+3
         cloth::ClothSettings settings;
         settings.weights = weights;
-        settings.step.quasi_newton = cloth::IterationLimits::exactly(3);
+        settings.step = cloth::StepSettings::whole(cloth::IterationLimits::exactly(3));
         settings.guard.max_substeps = 1;  // no step is cut or searched
         return cloth::make_cloth(garment, settings);
     };
@@ -305,8 +306,8 @@ TEST_F(GuideSnippets, Solvers) {
     // Learned steppers are named after the file of their network.
     const std::pair<cloth::StepperFactory, const char*> solvers[] = {
         {small, "small"},
-        {physics, "quasi-newton"},
-        {small_steps, "quasi-newton-3s4"},
+        {physics, "quasi-newton-3s120"},
+        {whole_steps, "quasi-newton"},
         {bdf2, "quasi-newton-bdf2"},
         {xpbd, "xpbd-40"},
         {xpbd_layers, "xpbd-40"},

@@ -31,7 +31,7 @@ std::unique_ptr<Stepper> reference(const Garment& garment) {
 
 std::unique_ptr<Stepper> guarded(const Garment& garment) {
     ClothStepperSettings settings;
-    settings.step.quasi_newton = IterationLimits::exactly(2);
+    settings.step = StepSettings::in_small_steps(60.0, 2);
     settings.step.potential.integrator = Integrator::bdf2;
     settings.guard.max_substeps = 4;
     settings.guard.iterations = IterationLimits::exactly(2);
@@ -55,7 +55,6 @@ std::unique_ptr<Stepper> learned(const Garment& garment) {
     static const auto fast = weights("fast");
     ClothSettings settings;
     settings.weights = fast;
-    settings.step.quasi_newton = IterationLimits::exactly(3);
     settings.guard.max_substeps = 2;
     return make_cloth(garment, settings);
 }

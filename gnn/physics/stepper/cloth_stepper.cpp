@@ -87,11 +87,6 @@ ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> s
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);
     check_range("ClothStepperSettings.substeps", substeps, 1, 64);
-    if (substeps > 1 && m_solver->settings().small_steps > 1)
-        throw ArgumentError("ClothStepperSettings.substeps",
-                            "is " + std::to_string(substeps) + ", and StepSettings.small_steps " +
-                                std::to_string(m_solver->settings().small_steps),
-                            "set one of them to 1");
     if (fixed_dt() > 0.0) prepare(fixed_dt());
 }
 
@@ -101,8 +96,7 @@ std::string ClothStepper::name() const {
 
 void ClothStepper::prepare(double dt) {
     m_solver->prepare(dt / m_substeps);
-    const int small_steps = m_solver->settings().small_steps;
-    if (small_steps > 1) m_solver->prepare(dt / small_steps);
+    if (m_substeps == 1) m_solver->prepare(dt / m_solver->small_steps(dt));
     for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2)
         m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
 }
@@ -189,8 +183,9 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
     if (is_watched()) m_start = state;
-    StepReport report = m_solver->prefers_small_steps(state) ? take_small_steps(boundary, dt, state)
-                        : is_made_for(dt)                    ? m_solver->whole(boundary, dt, state)
+    const int small_steps = m_solver->small_steps(dt, state);
+    StepReport report = small_steps > 1   ? take_small_steps(small_steps, boundary, dt, state)
+                        : is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                           : m_solver->part(boundary, dt, m_guard.iterations, state);
     if (search_it && report.finite) search(boundary, m_start.x, state.x, report);
     if (should_search && !search_it) {
@@ -205,11 +200,12 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     return report;
 }
 
-StepReport ClothStepper::take_small_steps(const Boundary& boundary, double dt, ClothState& state) {
-    const int count = m_solver->settings().small_steps;
+StepReport ClothStepper::take_small_steps(int count, const Boundary& boundary, double dt,
+                                          ClothState& state) {
     m_state.v = state.v;
     add_lag(count, state);
-    const StepReport report = m_solver->in_small_steps(boundary, dt, state);
+    const auto from = is_made_for(dt) ? StepSolver::From::start : StepSolver::From::guess;
+    const StepReport report = m_solver->in_small_steps(boundary, dt, from, state);
     if (report.finite)
         keep_lag(count, m_solver->end_velocity(), state);
     else
@@ -266,7 +262,7 @@ void ClothStepper::add_lag(int parts, ClothState& state) const {
         if (lag->parts < 2 || !same_points(lag->x, state.x)) continue;
         if (lag->parts == parts)
             state.v += lag->v;
-        else if (m_solver->settings().small_steps > 1)
+        else if (m_solver->settings().small_step_rate > 0.0 && m_substeps == 1)
             state.v += share(parts) / share(lag->parts) * lag->v;
         return;
     }

@@ -54,7 +54,8 @@ struct ClothStepperSettings {
     StepSettings step;
     int substeps = 1;  ///< equal parts of every step at least, 1 to 64: smaller steps damp less and
                        ///< are nearer to the equations of motion. Parts do not use the start, are
-                       ///< whole steps of their own, and so dearer than StepSettings::small_steps
+                       ///< whole steps of their own, and so dearer than small steps, which are not
+                       ///< taken if this is more than 1
     GuardSettings guard;
     double max_ms = std::numeric_limits<double>::infinity();  ///< see ClothStepper::set_max_ms(),
                                                               ///< 0.1 to infinity
@@ -62,7 +63,7 @@ struct ClothStepperSettings {
     /// Quasi-Newton steps that are taken as they are, for measurements.
     static ClothStepperSettings plain(const IterationLimits& limits = {}) {
         ClothStepperSettings settings;
-        settings.step.quasi_newton = limits;
+        settings.step = StepSettings::whole(limits);
         settings.guard = GuardSettings::off();
         return settings;
     }
@@ -153,7 +154,7 @@ class ClothStepper : public Stepper {
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
-    StepReport take_small_steps(const Boundary& boundary, double dt, ClothState& state);
+    StepReport take_small_steps(int count, const Boundary& boundary, double dt, ClothState& state);
     StepReport take_parts(int substeps, const Boundary& boundary, double dt,
                           Corrections corrections, ClothState& state);
     StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits,

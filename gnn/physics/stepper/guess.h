@@ -22,10 +22,17 @@ void place_pins(const Garment& garment, const Boundary& boundary, Points& x);
 /// behind their backstops, to where they may be.
 void move_to_goals(const Garment& garment, const Boundary& boundary, Points& x);
 
-/// Where every solver and network starts: the extrapolation, moved to within the limits of goals,
-/// projected out of obstacles, with the pins at their targets.
+/// Where networks start: the extrapolation, moved to within the limits of goals, projected out of
+/// obstacles, with the pins at their targets.
 void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt, double contact_distance, Points& x);
+
+/// Where solvers without a network start: the same, but vertices that were closer to an obstacle
+/// than `contact_distance` at t are not lifted farther than where they were, up to 0.3 mm deep. So
+/// contact carries from the start what it carried at t: cloth that rests or slides on a surface
+/// would have to sink anew in every step, and would tremble where iterations are few.
+void resting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                   const SurfaceContacts& contacts, double dt, double contact_distance, Points& x);
 
 /// Whether one step can be made of these: arrays of the garment's sizes, all numbers finite, dt >
 /// 0.

@@ -20,7 +20,7 @@ constexpr double rest_speed = 0.1;  // m/s
 const StepSettings& checked(const StepSettings& settings) {
     check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
-    check_range("StepSettings.small_steps", settings.small_steps, 1, 64);
+    check_range("StepSettings.small_step_rate", settings.small_step_rate, 0.0, 1e4);
     return settings;
 }
 
@@ -51,20 +51,20 @@ StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
       m_projection(garment),
       m_goals(garment),
       m_self_contact(garment, settings.potential.self_contact) {
-    if (m_start && settings.small_steps > 1)
-        throw ArgumentError("StepSettings.small_steps",
-                            "is " + std::to_string(settings.small_steps) +
-                                ", but a start (a network) is of a whole step",
-                            "set it to 1, or use no network");
 }
 
 std::string StepSolver::name() const {
-    if (m_start) return m_start->name() + suffix_of(m_settings.quasi_newton, '+');
-    if (m_settings.minimiser == MinimiserKind::newton) return "reference";
     const IterationLimits& limits = m_settings.quasi_newton;
+    const double rate = m_settings.small_step_rate;
+    const std::string small = rate > 0.0 ? "s" + std::to_string(std::lround(rate)) : "";
+    if (m_start) {
+        const std::string suffix = suffix_of(limits, '+') + small;
+        return m_start->name() + (suffix == "+3s120" ? "" : suffix);
+    }
+    if (m_settings.minimiser == MinimiserKind::newton) return "reference";
     std::string name = "quasi-newton";
     if (limits.tolerance == 0.0) name += suffix_of(limits, '-');
-    if (m_settings.small_steps > 1) name += "s" + std::to_string(m_settings.small_steps);
+    name += small;
     if (m_settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
     return name;
 }
@@ -95,19 +95,30 @@ IterationLimits StepSolver::adjusted(IterationLimits limits) const {
 
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
-    limits.iterations *= m_settings.small_steps;
-    limits.least_iterations *= m_settings.small_steps;
+    limits.iterations *= small_steps(dt);
+    limits.least_iterations *= small_steps(dt);
     return solve(boundary, dt, m_start.get(), limits, 1, state);
 }
 
-StepReport StepSolver::in_small_steps(const Boundary& boundary, double dt, ClothState& state) {
-    return solve(boundary, dt, nullptr, m_settings.quasi_newton, m_settings.small_steps, state);
+StepReport StepSolver::in_small_steps(const Boundary& boundary, double dt, From from,
+                                      ClothState& state) {
+    return solve(boundary, dt, from == From::start ? m_start.get() : nullptr,
+                 m_settings.quasi_newton, small_steps(dt), state);
 }
 
-bool StepSolver::prefers_small_steps(const ClothState& state) const {
-    return m_settings.small_steps > 1 && m_settings.minimiser == MinimiserKind::quasi_newton &&
-           std::isinf(m_most_residual) &&
-           state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
+/// Where few iterations are allowed they are not spread so thinly that the cloth gets softer.
+int StepSolver::small_steps(double dt) const {
+    constexpr double rounding = 1e-3;  // callers' time steps are floats
+    constexpr int most = 64, worthwhile = 2;
+    if (m_settings.minimiser == MinimiserKind::newton) return 1;
+    const double asked = std::ceil(m_settings.small_step_rate * dt - rounding);
+    const int allowed = std::min(most, m_max_iterations / worthwhile);
+    return asked < allowed ? std::max(1, static_cast<int>(asked)) : std::max(1, allowed);
+}
+
+int StepSolver::small_steps(double dt, const ClothState& state) const {
+    const bool moves = state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
+    return moves && std::isinf(m_most_residual) ? small_steps(dt) : 1;
 }
 
 StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
@@ -157,12 +168,19 @@ bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Star
     m_last_dt = dt / parts;
     m_parts = parts;
     const std::vector<Tangle>* const tangles = m_self_contact.tangles_at(state.x);
-    if (parts == 1) {
-        begin(boundary, m_contacts, dt, tangles);
-        return minimise_part(boundary, m_contacts, start, from, limits, report);
-    }
+    if (parts > 1) return run_small_steps(boundary, dt, start, limits, tangles, report);
+    begin(boundary, m_contacts, dt, tangles);
+    return minimise_part(boundary, m_contacts, start, from, limits, report);
+}
+
+/// From m_last, which goes on from part to part.
+bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart* start,
+                                 const IterationLimits& limits, const std::vector<Tangle>* tangles,
+                                 StepReport& report) {
+    const int parts = m_parts;
+    bool predicted = start && predict_acceleration(boundary, dt, *start, tangles, report);
     const Deadline deadline = m_deadline, for_more = m_deadline_for_more;
-    m_boundary_part.begin(*m_garment, state, boundary, parts, BoundaryPart::Surfaces::left_out);
+    m_boundary_part.begin(*m_garment, m_last, boundary, parts, BoundaryPart::Surfaces::left_out);
     m_contact_part.begin(m_contacts, parts);
     bool finite = true;
     for (int k = 0; k < parts && finite; ++k) {
@@ -173,12 +191,40 @@ bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Star
         share(for_more, parts - k, m_deadline_for_more);
         begin(part, contacts, m_last_dt, tangles);
         m_quasi_newton.set_continued(k > 0);
-        finite = minimise_part(part, contacts, nullptr, Start::guess, limits, report);
+        if (!predicted) {
+            finite = minimise_part(part, contacts, nullptr, Start::guess, limits, report);
+            continue;
+        }
+        const PotentialValue* at_x = start_from_acceleration(part, contacts, report);
+        predicted = !report.prediction_rejected;
+        report.prediction_rejected = report.prediction_rejected && k == 0;
+        finite = descend(part, limits, at_x, m_last, report);
     }
     m_quasi_newton.set_continued(false);
     m_deadline = deadline;
     m_deadline_for_more = for_more;
     return finite;
+}
+
+/// What the start says of the whole step. False: it failed.
+bool StepSolver::predict_acceleration(const Boundary& boundary, double dt, StepStart& start,
+                                      const std::vector<Tangle>* tangles, StepReport& report) {
+    begin(boundary, m_contacts, dt, tangles);
+    choose_start(boundary, m_contacts, &start, IterationLimits::none(), dt, m_last, report);
+    m_acceleration = (m_started - m_guess) / (dt * dt);
+    return !report.prediction_rejected;
+}
+
+/// Leaves where a part starts in m_x; returns E and its gradient there.
+const PotentialValue* StepSolver::start_from_acceleration(const Boundary& boundary,
+                                                          const SurfaceContacts& contacts,
+                                                          StepReport& report) {
+    choose_start(boundary, contacts, nullptr, IterationLimits::none(), m_last_dt, m_last, report);
+    m_started = m_guess + m_last_dt * m_last_dt * m_acceleration;
+    place_pins(*m_garment, boundary, m_started);
+    const PotentialValue* const at_x = lower_of_guess_and_prediction(false, report);
+    m_x = m_started;
+    return at_x;
 }
 
 /// A part's share of the time that is left, for so many of them and contact projection.
@@ -244,8 +290,9 @@ const PotentialValue* StepSolver::choose_start(const Boundary& boundary,
                                                const SurfaceContacts& contacts, StepStart* start,
                                                const IterationLimits& limits, double dt,
                                                const ClothState& state, StepReport& report) {
-    starting_guess(*m_garment, state, boundary, contacts, dt,
-                   m_potential.settings().contact_distance, m_guess);
+    const bool as_learned = start || m_settings.minimiser == MinimiserKind::newton;
+    (as_learned ? starting_guess : resting_guess)(*m_garment, state, boundary, contacts, dt,
+                                                  m_potential.settings().contact_distance, m_guess);
     m_potential.separate_self_contact(m_guess);
     m_x = m_guess;
     if (!start) return nullptr;

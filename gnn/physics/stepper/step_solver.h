@@ -24,7 +24,7 @@ enum class MinimiserKind { quasi_newton, newton };
 
 struct StepSettings {
     MinimiserKind minimiser = MinimiserKind::quasi_newton;
-    QuasiNewtonSettings quasi_newton = IterationLimits::controlled();
+    QuasiNewtonSettings quasi_newton = few(3);  ///< in a whole step, or in each small one
     NewtonSettings newton;
     PotentialSettings potential;
     ProximitySettings proximity;
@@ -32,24 +32,38 @@ struct StepSettings {
     /// goes on with them, 0 to 10. 0 keeps those that were nearest at t; more follow cloth that
     /// slides past the end of a face.
     int contact_updates = 0;
-    /// Parts of equal length in which a whole step is minimised, one after the other, 1 to 64, with
-    /// the iterations of `quasi_newton` each. All have the contacts of the step, which move along,
-    /// and one contact projection follows the last. Small steps damp less, are nearer to the
-    /// equations of motion, and need fewer iterations. Cloth that hardly moves takes one step with
-    /// the iterations of all instead, so that it comes to rest, and so does a step that has to
-    /// reach a residual. Not with a start, which is of a whole step.
-    int small_steps = 1;
+    /// Small steps are parts of equal length in which a step is minimised, one after the other, as
+    /// many as make this rate at least (1/s, 0 to 10000), but 64 at most; 0: none. Each has the
+    /// iterations of `quasi_newton`. All have the contacts of the step, which move along, and one
+    /// contact projection follows the last. Small steps damp less, are nearer to the equations of
+    /// motion, and need fewer iterations; above this rate no step is cut. Cloth that hardly moves
+    /// takes one step with the iterations of all instead, so that it comes to rest, and so does a
+    /// step that has to reach a residual. What a start predicts is shared out between them.
+    double small_step_rate = 120.0;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.
     double safety_distance = 5e-4;
 
-    /// Few iterations in each of some small steps: as near to the equations of motion as many in
-    /// one, in less time, and in nearly the same time in every step.
-    static StepSettings in_small_steps(int count = 4, int iterations = 3) {
+    /// Few iterations in each small step: as near to the equations of motion as many in one whole
+    /// step, in less time, and in nearly the same time in every step. The default.
+    static StepSettings in_small_steps(double rate = 120.0, int iterations = 3) {
         StepSettings settings;
-        settings.small_steps = count;
-        settings.quasi_newton = IterationLimits::exactly(iterations);
-        settings.quasi_newton.contact_cg_iterations = 5;
+        settings.small_step_rate = rate;
+        settings.quasi_newton = few(iterations);
+        return settings;
+    }
+    /// One minimisation for each step.
+    static StepSettings whole(const QuasiNewtonSettings& limits = IterationLimits::controlled()) {
+        StepSettings settings;
+        settings.small_step_rate = 0.0;
+        settings.quasi_newton = limits;
+        return settings;
+    }
+
+ private:
+    static QuasiNewtonSettings few(int iterations) {
+        QuasiNewtonSettings settings = IterationLimits::exactly(iterations);
+        settings.contact_cg_iterations = 5;
         return settings;
     }
 };
@@ -69,16 +83,16 @@ class StepSolver {
     /// Keeps a reference to `garment`.
     /// @param start  of whole steps; null: the guess
     /// @param trees  of the obstacles where Boundary::trees is null; null: its own
-    /// @throws ArgumentError if a setting is out of range, or with a start and small steps
+    /// @throws ArgumentError if a setting is out of range
     StepSolver(const Garment& garment, const StepSettings& settings,
                std::shared_ptr<StepStart> start = nullptr,
                std::shared_ptr<ObstacleTrees> trees = nullptr);
     virtual ~StepSolver() = default;
 
     /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with
-    /// "sS" for S small steps, and with "-bdf2" at the end if that integrates; "reference" of
-    /// Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with a
-    /// tolerance.
+    /// "sR" for R small steps a second, and with "-bdf2" at the end if that integrates; "reference"
+    /// of Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with
+    /// a tolerance, "+KsR" with small steps, but for the default.
     std::string name() const;
     double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
     const StepSettings& settings() const { return m_settings; }
@@ -107,11 +121,14 @@ class StepSolver {
     /// The arguments have passed is_valid_step(); a step that fails leaves the state as it was.
     virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
 
-    /// The same in the small steps of the settings, without the start. The state has the mean
-    /// velocity of the step afterwards; the next one should go on from end_velocity().
-    StepReport in_small_steps(const Boundary& boundary, double dt, ClothState& state);
-    /// Whether a step from this state should be taken so.
-    bool prefers_small_steps(const ClothState& state) const;
+    enum class From { start, guess };
+    /// The same in small steps, from the start or without it. The state has the mean velocity of
+    /// the step afterwards; the next one should go on from end_velocity().
+    StepReport in_small_steps(const Boundary& boundary, double dt, From from, ClothState& state);
+    /// In how many a step of this length (s) is taken if the cloth moves.
+    int small_steps(double dt) const;
+    /// The same from this state; 1: it is whole.
+    int small_steps(double dt, const ClothState& state) const;
     /// Of the last step, at its end (|V| x 3, m/s).
     const Points& end_velocity() const { return m_v; }
 
@@ -146,6 +163,14 @@ class StepSolver {
     void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
     bool run(const Boundary& boundary, double dt, StepStart* start, Start from,
              const IterationLimits& limits, int parts, const ClothState& state, StepReport& report);
+    bool run_small_steps(const Boundary& boundary, double dt, StepStart* start,
+                         const IterationLimits& limits, const std::vector<Tangle>* tangles,
+                         StepReport& report);
+    bool predict_acceleration(const Boundary& boundary, double dt, StepStart& start,
+                              const std::vector<Tangle>* tangles, StepReport& report);
+    const PotentialValue* start_from_acceleration(const Boundary& boundary,
+                                                  const SurfaceContacts& contacts,
+                                                  StepReport& report);
     void share(const Deadline& whole, int parts, Deadline& part) const;
     void begin(const Boundary& boundary, const SurfaceContacts& contacts, double dt,
                const std::vector<Tangle>* tangles);
@@ -183,6 +208,7 @@ class StepSolver {
     double m_contact_ms = 0.0;  ///< what contact took in the last step
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
+    Points m_acceleration;      ///< |V| x 3 (m/s^2): what the start adds to guesses
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
     BoundaryPart m_boundary_part;
     ContactPart m_contact_part;

@@ -85,8 +85,8 @@ TEST(SolverFamily, NamesSayFamilyAndSetting) {
     EXPECT_EQ(solver_family("small+3~tshirt_1000@20").setting, "+3@20");
     EXPECT_EQ(solver_family("bullet-5x1").setting, "5");
     EXPECT_EQ(solver_family("reference").name, solver_family("newton-3").name);
-    EXPECT_EQ(solver_family("quasi-newton-3s4").setting, "3s4");
-    EXPECT_EQ(solver_family("quasi-newton-3s4-bdf2").name, "quasi-Newton, small steps, BDF2");
+    EXPECT_EQ(solver_family("quasi-newton-3s120").setting, "3s120");
+    EXPECT_EQ(solver_family("quasi-newton-3s120-bdf2").name, "quasi-Newton, small steps, BDF2");
     EXPECT_EQ(solver_family("quasi-newton-30").setting, "30");
     EXPECT_EQ(solver_family("quasi-newton").setting, "shipped");
     EXPECT_EQ(solver_family("quasi-newton").name, solver_family("quasi-newton-30").name);

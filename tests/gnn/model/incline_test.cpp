@@ -82,6 +82,10 @@ std::unique_ptr<Stepper> solver(const Garment& garment) {
     return std::make_unique<ClothStepper>(garment, ClothStepperSettings::plain());
 }
 
+std::unique_ptr<Stepper> small_steps(const Garment& garment) {
+    return make_cloth(garment);
+}
+
 std::unique_ptr<Stepper> learned(const Garment& garment) {
     ClothSettings settings;
     settings.weights = std::make_shared<const EngineWeights>(
@@ -90,7 +94,9 @@ std::unique_ptr<Stepper> learned(const Garment& garment) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Steppers, Incline,
-                         ::testing::Values(Case{"QuasiNewton", solver}, Case{"Learned", learned}),
+                         ::testing::Values(Case{"QuasiNewton", solver},
+                                           Case{"SmallSteps", small_steps},
+                                           Case{"Learned", learned}),
                          [](const auto& one) { return one.param.name; });
 
 }  // namespace

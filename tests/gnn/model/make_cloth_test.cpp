@@ -187,7 +187,7 @@ TEST_F(NetworkStep, IsNamedAfterVariantAndIterations) {
 
 TEST_F(NetworkStep, IsNamedAfterItsWeightsWhereTheyHaveAName) {
     ClothSettings settings;
-    settings.step.quasi_newton = IterationLimits::exactly(2);
+    settings.step = StepSettings::whole(IterationLimits::exactly(2));
     Weights weights = test::random_weights(small_config());
     const auto name = [&] {
         settings.weights = std::make_shared<const EngineWeights>(weights);
@@ -244,7 +244,7 @@ TEST_F(NetworkStep, StepsOfAnotherLengthAreMadeWithoutTheNetwork) {
     ASSERT_TRUE(learned->step(m_boundary, 0.5 * m_dt, other).finite);
     EXPECT_EQ(learned->solver().start().rows(), 0);
     ClothStepperSettings settings;
-    settings.step.quasi_newton = GuardSettings().iterations;
+    settings.step = StepSettings::whole(GuardSettings().iterations);
     settings.guard = GuardSettings::off();
     ClothStepper(m_garment, settings).step(m_boundary, 0.5 * m_dt, unguarded);
     EXPECT_EQ(other.x, unguarded.x);
@@ -254,7 +254,7 @@ TEST_F(NetworkStep, StepsOfAnotherLengthAreMadeWithoutTheNetwork) {
 
 TEST_F(NetworkStep, WithoutANetworkClothIsPhysicsAlone) {
     const auto cloth = make_cloth(m_garment);
-    EXPECT_EQ(cloth->name(), "quasi-newton");
+    EXPECT_EQ(cloth->name(), "quasi-newton-3s120");
     EXPECT_EQ(cloth->fixed_dt(), 0.0);
     ClothState other = m_state;
     ASSERT_TRUE(cloth->step(m_boundary, m_dt, m_state).finite);

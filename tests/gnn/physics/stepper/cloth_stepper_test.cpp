@@ -16,7 +16,7 @@ constexpr double dt = 1.0 / 30.0;
 /// Solvers of which the whole step is a stand-in; parts are the real solver's, or fail.
 class Standing : public StepSolver {
  public:
-    explicit Standing(const Garment& garment) : StepSolver(garment, {}) {}
+    explicit Standing(const Garment& garment) : StepSolver(garment, StepSettings::whole()) {}
     StepReport part(const Boundary& boundary, double h, const IterationLimits& limits,
                     ClothState& state) override {
         return parts_fail ? StepReport::failed() : StepSolver::part(boundary, h, limits, state);
@@ -443,7 +443,7 @@ TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
 class Spoiling : public StepSolver {
  public:
     Spoiling(const Garment& garment, Boundary& boundary)
-        : StepSolver(garment, {}), m_boundary(&boundary) {}
+        : StepSolver(garment, StepSettings::whole()), m_boundary(&boundary) {}
     StepReport part(const Boundary&, double h, const IterationLimits&, ClothState& state) override {
         m_boundary->obstacles[0].friction = std::numeric_limits<double>::quiet_NaN();
         ++parts;
@@ -614,7 +614,8 @@ TEST_F(Parts, FallNearerToTheParabola) {
 /// Parts that fail from one on.
 class FailingAt : public StepSolver {
  public:
-    FailingAt(const Garment& garment, int good) : StepSolver(garment, {}), m_good(good) {}
+    FailingAt(const Garment& garment, int good)
+        : StepSolver(garment, StepSettings::whole()), m_good(good) {}
     StepReport part(const Boundary&, double h, const IterationLimits&, ClothState& state) override {
         if (m_good-- == 0) return StepReport::failed();
         state.x.array() += h;

@@ -86,7 +86,7 @@ TEST_F(MaxMs, WithoutTimeFastStepsAreCutIntoFewerParts) {
 class SlowWhole : public StepSolver {
  public:
     SlowWhole(const Garment& garment, int iterations)
-        : StepSolver(garment, {}), m_iterations(iterations) {}
+        : StepSolver(garment, StepSettings::whole()), m_iterations(iterations) {}
     StepReport whole(const Boundary& boundary, double dt, ClothState& state) override {
         StepReport report = StepSolver::whole(boundary, dt, state);
         report.times = {};
@@ -129,7 +129,7 @@ TEST_F(MaxMs, StepsThatAreAlwaysCutStayCut) {
 /// Its whole steps fail.
 class FailingWhole : public StepSolver {
  public:
-    explicit FailingWhole(const Garment& garment) : StepSolver(garment, {}) {}
+    explicit FailingWhole(const Garment& garment) : StepSolver(garment, StepSettings::whole()) {}
     StepReport whole(const Boundary&, double, ClothState&) override { return StepReport::failed(); }
 };
 

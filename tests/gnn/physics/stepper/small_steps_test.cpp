@@ -16,7 +16,7 @@ constexpr double dt = 1.0 / 30.0;
 
 ClothStepperSettings small(int count, int iterations) {
     ClothStepperSettings settings;
-    settings.step = StepSettings::in_small_steps(count, iterations);
+    settings.step = StepSettings::in_small_steps(count / dt, iterations);
     settings.guard = GuardSettings::off();
     return settings;
 }
@@ -191,36 +191,103 @@ TEST_F(SmallSteps, ShareTheIterationsThatAStepMayTake) {
     ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
     const Boundary boundary = boundary_of(m_hung, state);
     EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 8);
+    EXPECT_EQ(stepper.solver().small_steps(dt), 4);
+    stepper.set_max_iterations(5);
+    EXPECT_EQ(stepper.solver().small_steps(dt), 2) << "of two iterations or more each";
+    EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 4);
     stepper.set_max_iterations(1);
-    EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 4) << "one each at least";
+    EXPECT_EQ(stepper.step(boundary, dt, state).iterations, 1) << "in a whole step";
 }
 
-/// Predicts nothing.
-class Nowhere : public StepStart {
+/// Predicts the same acceleration (m/s^2) for all vertices.
+class Uniform : public StepStart {
  public:
-    std::string name() const override { return "nowhere"; }
+    explicit Uniform(const Vec3& acceleration) : m_acceleration(acceleration) {}
+    std::string name() const override { return "uniform"; }
     double fixed_dt() const override { return dt; }
-    bool predict(const ClothState&, const Boundary&, const IncrementalPotential&, const Points&,
-                 PotentialValue&, Points&, StageTimes&) override {
+    bool predict(const ClothState&, const Boundary&, const IncrementalPotential&,
+                 const Points& guess, PotentialValue&, Points& prediction, StageTimes&) override {
+        ++asked;
+        prediction = guess.rowwise() + dt * dt * m_acceleration.transpose();
         return false;
     }
+    int asked = 0;
+
+ private:
+    Vec3 m_acceleration;
 };
 
 TEST_F(SmallSteps, SettingsThatDoNotGoTogetherAreRefused) {
-    EXPECT_THROW(ClothStepper(m_hung, small(0, 3)), ArgumentError);
-    EXPECT_THROW(ClothStepper(m_hung, small(65, 3)), ArgumentError);
-    ClothStepperSettings both = small(4, 3);
-    both.substeps = 2;
-    EXPECT_THROW(ClothStepper(m_hung, both), ArgumentError);
-    EXPECT_THROW(ClothStepper(m_hung, small(4, 3), std::make_shared<Nowhere>()), ArgumentError);
-    EXPECT_NO_THROW(ClothStepper(m_hung, small(1, 3), std::make_shared<Nowhere>()));
+    for (const double bad : {-1.0, 1.1e4, std::numeric_limits<double>::quiet_NaN()}) {
+        ClothStepperSettings settings;
+        settings.step.small_step_rate = bad;
+        EXPECT_THROW(ClothStepper(m_hung, settings), ArgumentError);
+    }
 }
 
 TEST_F(SmallSteps, StandInTheName) {
-    EXPECT_EQ(ClothStepper(m_hung, small(4, 3)).name(), "quasi-newton-3s4");
+    EXPECT_EQ(ClothStepper(m_hung).name(), "quasi-newton-3s120");
     ClothStepperSettings settings = small(2, 5);
     settings.step.potential.integrator = Integrator::bdf2;
-    EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton-5s2-bdf2");
+    EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton-5s60-bdf2");
+    settings.step = StepSettings::whole();
+    EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton");
+    const auto start = std::make_shared<Uniform>(Vec3::Zero());
+    EXPECT_EQ(ClothStepper(m_hung, {}, start).name(), "uniform");
+    EXPECT_EQ(ClothStepper(m_hung, small(2, 3), start).name(), "uniform+3s60");
+}
+
+TEST_F(SmallSteps, AreAsManyAsMakeTheRate) {
+    const StepSolver solver(m_hung, StepSettings::in_small_steps(120.0));
+    EXPECT_EQ(solver.small_steps(1.0 / 240.0), 1);
+    EXPECT_EQ(solver.small_steps(static_cast<double>(1.0f / 120.0f)), 1);
+    EXPECT_EQ(solver.small_steps(static_cast<double>(1.0f / 60.0f)), 2);
+    EXPECT_EQ(solver.small_steps(0.02), 3);
+    EXPECT_EQ(solver.small_steps(1.0 / 30.0), 4);
+    EXPECT_EQ(solver.small_steps(2.0), 64) << "at most";
+    EXPECT_EQ(StepSolver(m_hung, StepSettings::whole()).small_steps(2.0), 1);
+}
+
+TEST_F(SmallSteps, ShareOutWhatAStartPredicts) {
+    // a fall that the start knows of needs no iteration, and one that is wrong is not taken
+    for (const double known : {-9.81, 300.0}) {
+        const auto start = std::make_shared<Uniform>(Vec3(0, known, 0));
+        ClothStepper told(m_free, small(4, 1), start), untold(m_free, small(4, 1));
+        ClothState a = moving(m_free, Vec3(0, -0.5, 0)), b = a;
+        const Boundary boundary = boundary_of(m_free, a);
+        const StepReport report = told.step(boundary, dt, a);
+        ASSERT_TRUE(report.finite);
+        untold.step(boundary, dt, b);
+        EXPECT_EQ(report.prediction_rejected, known > 0.0);
+        EXPECT_LT((a.x - b.x).cwiseAbs().maxCoeff(), 1e-9);
+        EXPECT_EQ(start->asked, 1) << "once a step";
+        const double fallen = a.x(7, 1) - m_free.rest().vertices(7, 1);
+        EXPECT_NEAR(fallen, -0.5 * dt - 9.81 * dt * dt * 10 / 16, 1e-9) << "1 + 2 + 3 + 4 of 16";
+    }
+}
+
+TEST_F(SmallSteps, OfAStartThatFailsGoOnWithoutIt) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    ClothStepper told(m_hung, small(4, 3), std::make_shared<Uniform>(Vec3(nan, nan, nan)));
+    ClothStepper untold(m_hung, small(4, 3));
+    ClothState a = moving(m_hung, Vec3(0, -0.5, 0)), b = a;
+    const Boundary boundary = boundary_of(m_hung, a);
+    const StepReport report = told.step(boundary, dt, a);
+    EXPECT_TRUE(report.finite);
+    EXPECT_TRUE(report.prediction_rejected);
+    untold.step(boundary, dt, b);
+    EXPECT_EQ(a.x, b.x);
+}
+
+TEST_F(SmallSteps, OfAnotherLengthAreMadeWithoutTheStart) {
+    const auto start = std::make_shared<Uniform>(Vec3(0, -9.81, 0));
+    ClothStepper told(m_hung, small(4, 3), start), untold(m_hung, small(4, 3));
+    ClothState a = moving(m_hung, Vec3(0, -0.5, 0)), b = a;
+    const Boundary boundary = boundary_of(m_hung, a);
+    EXPECT_TRUE(told.step(boundary, 0.02, a).finite);
+    untold.step(boundary, 0.02, b);
+    EXPECT_EQ(a.x, b.x);
+    EXPECT_EQ(start->asked, 0);
 }
 
 }  // namespace
