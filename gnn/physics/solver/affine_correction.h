@@ -4,7 +4,6 @@
 #include <Eigen/SparseCore>
 
 #include "gnn/physics/solver/affine_fields.h"
-#include "gnn/physics/solver/contact_hessian.h"
 
 namespace cloth {
 
@@ -19,21 +18,22 @@ class AffineCorrection {
     void take(const Points& x, const Eigen::SparseMatrix<double>& laplacian, double stiffness,
               const VectorX& masses, double rate);
 
+    const AffineFields& fields() const { return m_fields; }                 ///< F
+    const AffineFields::Columns& p_columns() const { return m_p_columns; }  ///< P F
+
+    /// C' (F' P F) C, summed over the columns of C.
+    double energy(const AffineFields::Coefficients& c) const {
+        return (m_p * c).cwiseProduct(c).sum();
+    }
+
     /// Factorises F' A F. False: it is not positive definite in double precision.
-    bool factorise(const ContactHessian& contacts);
+    /// @param blocks  F' (contact blocks) F
+    bool factorise(const AffineFields::System& blocks);
 
-    /// x = F (F' A F)^-1 F' b, p_x = P x.
-    void solve(const Points& b, Points& x, Points& p_x) const;
-
-    /// direction = z + beta direction - F c, and P times that, with c so that A times the new
-    /// direction has no affine part. The direction before has none, nor has the residual.
-    /// @param z         P^-1 residual
-    void add_conjugate(const ContactHessian& contacts, const Points& z, const Points& residual,
-                       double beta, Points& direction, Points& p_direction) const;
-
- private:
+    /// (F' A F)^-1 moments.
     AffineFields::Coefficients coefficients(const AffineFields::Coefficients& moments) const;
 
+ private:
     AffineFields m_fields;
     AffineFields::Columns m_p_columns;  ///< P F
     AffineFields::Weights m_p;          ///< F' P F

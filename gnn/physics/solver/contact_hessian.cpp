@@ -36,6 +36,7 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
 void ContactHessian::begin_vertices(const IncrementalPotential& potential,
                                     const std::vector<int>& row_of) {
     m_blocks.clear();
+    m_anticipated = false;
     m_contacts.clear();
     m_sliders.clear();
     m_slider_index.clear();
@@ -71,7 +72,6 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
                                         const std::vector<int>& row_of) {
     m_self = &energy;
     m_self_contacts.clear();
-    m_springs.clear();
     if (std::all_of(row_of.begin(), row_of.end(), [](int row) { return row < 0; })) return;
     for (const SelfContactEnergy::Pair& pair : energy.pairs()) {
         SelfContact contact{{}, pair.weight, pair.normal, pair.stiffness};
@@ -106,6 +106,7 @@ double ContactHessian::SelfContact::along(const Points& direction) const {
 void ContactHessian::linearise(const IncrementalPotential& potential, const Points& x) {
     m_weight = potential.settings().contact_weight;
     m_blocks.clear();
+    m_anticipated = false;
     for (Contact& contact : m_contacts) {
         contact.depth = contact.surface - x.row(contact.vertex).dot(contact.normal);
         contact.stiffness = 6.0 * m_weight * std::max(contact.depth, 0.0);
@@ -165,46 +166,19 @@ bool ContactHessian::anticipate(const Points& step) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - contact.along(step);
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
+        any = any || contact.stiffness > 0.0;
     }
     if (m_goals.active()) m_goals.anticipate(step);
     gather_blocks();
-    gather_springs();
-    return any || !m_springs.empty() || !m_goals.blocks().empty();
-}
-
-void ContactHessian::Block::add(const Vec3& n, double along, double across) {
-    const Vec3 scaled = (along - across) * n;
-    xx += scaled[0] * n[0] + across;
-    xy += scaled[0] * n[1];
-    xz += scaled[0] * n[2];
-    yy += scaled[1] * n[1] + across;
-    yz += scaled[1] * n[2];
-    zz += scaled[2] * n[2] + across;
-}
-
-void ContactHessian::Block::subtract(const Vec3& v) {
-    xx -= v[0] * v[0];
-    xy -= v[0] * v[1];
-    xz -= v[0] * v[2];
-    yy -= v[1] * v[1];
-    yz -= v[1] * v[2];
-    zz -= v[2] * v[2];
-}
-
-void ContactHessian::Block::add(const Eigen::Matrix3d& symmetric) {
-    xx += symmetric(0, 0);
-    xy += symmetric(0, 1);
-    xz += symmetric(0, 2);
-    yy += symmetric(1, 1);
-    yz += symmetric(1, 2);
-    zz += symmetric(2, 2);
+    m_anticipated = true;
+    return any || !m_goals.blocks().empty();
 }
 
 void ContactHessian::gather_blocks() {
     m_blocks.clear();
-    const auto at = [&](int row) -> Block& {
-        if (m_blocks.empty() || m_blocks.back().row != row) m_blocks.emplace_back(row);
-        return m_blocks.back();
+    const auto at = [&](int row) -> Stiffness& {
+        if (m_blocks.empty() || m_blocks.back().row != row) m_blocks.push_back({row, {}});
+        return m_blocks.back().stiffness;
     };
     auto slider = m_sliders.begin();
     const auto add_sliders = [&](int end) {
@@ -231,128 +205,17 @@ double ContactHessian::rise(const Ridge& ridge, const Points& step) {
     return rise;
 }
 
-template <class Visit>
-void ContactHessian::for_each_force(const Points& direction, const Visit& visit) const {
-    for (const Block& block : m_blocks) {
-        const double* const d = direction.data() + 3 * static_cast<Eigen::Index>(block.row);
-        visit(block.row, Vec3(block.xx * d[0] + block.xy * d[1] + block.xz * d[2],
-                              block.xy * d[0] + block.yy * d[1] + block.yz * d[2],
-                              block.xz * d[0] + block.yz * d[1] + block.zz * d[2]));
-    }
-    for (const Ridge& ridge : m_ridges) {
-        if (ridge.stiffness == 0.0) continue;
-        const Vec3 force = ridge.stiffness * rise(ridge, direction) * ridge.normal;
-        for (size_t k = 0; k < 3; ++k) visit(ridge.row[k], ridge.weight[k] * force);
-    }
-    for (const LayerSlider& slider : m_layer_sliders) {
+void ContactHessian::add_product(const Points& direction, Points& product) const {
+    for (const Block& block : m_blocks)
+        product.row(block.row) += (block.stiffness * Vec3(direction.row(block.row))).transpose();
+    for_each_coupling([&](const Coupling& coupling) {
         Vec3 motion = Vec3::Zero();
         for (size_t k = 0; k < 4; ++k)
-            motion += slider.weight[k] * direction.row(slider.row[k]).transpose();
-        const Vec3 force = slider.stiffness * (motion - slider.normal.dot(motion) * slider.normal);
-        for (size_t k = 0; k < 4; ++k) visit(slider.row[k], slider.weight[k] * force);
-    }
-}
-
-void ContactHessian::gather_springs() {
-    m_springs.clear();
-    for (const SelfContact& contact : m_self_contacts) {
-        if (!(contact.stiffness > 0.0)) continue;
-        Spring& spring = m_springs.emplace_back();
-        spring.row = contact.row;
-        for (size_t k = 0; k < 4; ++k) {
-            spring.weight[k] = static_cast<float>(contact.weight[k]);
-        }
-        for (size_t k = 0; k < 3; ++k)
-            spring.normal[k] = static_cast<float>(contact.normal[static_cast<Eigen::Index>(k)]);
-        spring.stiffness = static_cast<float>(contact.stiffness);
-    }
-}
-
-void ContactHessian::add_springs(const Points& direction, Points& product) const {
-    const double* const from = direction.data();
-    double* const to = product.data();
-    for (const Spring& spring : m_springs) {
-        const double nx = spring.normal[0], ny = spring.normal[1], nz = spring.normal[2];
-        double along = 0.0;
-        for (size_t k = 0; k < 4; ++k) {
-            const double* const row = from + 3 * static_cast<Eigen::Index>(spring.row[k]);
-            along += spring.weight[k] * (row[0] * nx + row[1] * ny + row[2] * nz);
-        }
-        along *= spring.stiffness;
-        for (size_t k = 0; k < 4; ++k) {
-            double* const row = to + 3 * static_cast<Eigen::Index>(spring.row[k]);
-            const double force = along * spring.weight[k];
-            row[0] += force * nx, row[1] += force * ny, row[2] += force * nz;
-        }
-    }
-}
-
-void ContactHessian::add_product(const Points& direction, Points& product) const {
-    for_each_force(direction,
-                   [&](int row, const Vec3& force) { product.row(row) += force.transpose(); });
-    add_springs(direction, product);
-}
-
-void ContactHessian::add_moments(const AffineFields& fields, const Points& direction,
-                                 AffineFields::Coefficients& moments) const {
-    Eigen::Matrix<double, AffineFields::count, 3> sum;  // column-major: one product per column
-    sum.setZero();
-    for_each_force(direction, [&](int row, const Vec3& force) {
-        const AffineFields::Row f = fields.at(row);
-        for (int k = 0; k < 3; ++k) sum.col(k) += force[k] * f;
+            motion += coupling.weight[k] * direction.row(coupling.row[k]).transpose();
+        const Vec3 force = coupling.stiffness * motion;
+        for (size_t k = 0; k < 4; ++k)
+            product.row(coupling.row[k]) += coupling.weight[k] * force.transpose();
     });
-    moments += sum;
-    if (m_springs.empty()) return;
-    m_spring_forces.setZero(direction.rows(), 3);
-    add_springs(direction, m_spring_forces);
-    moments += fields.moments(m_spring_forces);
-}
-
-void ContactHessian::add_to(const AffineFields& fields, AffineFields::System& system) const {
-    using Row = AffineFields::Row;
-    // stiffness (f x n)(f x n)' = stiffness (n n') x (f f'), f: how far each field moves the point
-    AffineFields::Weights sums[3][3];
-    for (auto& row : sums)
-        for (AffineFields::Weights& sum : row) sum.setZero();
-    const auto add = [&](const Row& f, const Vec3& n, double stiffness) {
-        const AffineFields::Weights weights = f * f.transpose();
-        for (int i = 0; i < 3; ++i)
-            for (int j = i; j < 3; ++j) sums[i][j] += (stiffness * n[i] * n[j]) * weights;
-    };
-    const auto combined = [&](const auto& row, const auto& weight) {
-        Row f = Row::Zero();
-        for (size_t k = 0; k < weight.size(); ++k)
-            if (weight[k] != 0.0) f += weight[k] * fields.at(row[k]);
-        return f;
-    };
-    for (const Block& block : m_blocks) {
-        const Row f = fields.at(block.row);
-        const AffineFields::Weights weights = f * f.transpose();
-        sums[0][0] += block.xx * weights;
-        sums[0][1] += block.xy * weights;
-        sums[0][2] += block.xz * weights;
-        sums[1][1] += block.yy * weights;
-        sums[1][2] += block.yz * weights;
-        sums[2][2] += block.zz * weights;
-    }
-    for (const Ridge& ridge : m_ridges)
-        if (ridge.stiffness > 0.0)
-            add(combined(ridge.row, ridge.weight), ridge.normal, ridge.stiffness);
-    for (const Spring& spring : m_springs)
-        add(combined(spring.row, spring.weight),
-            Eigen::Map<const Eigen::Vector3f>(spring.normal.data()).cast<double>(),
-            spring.stiffness);
-    AffineFields::Weights sliding = AffineFields::Weights::Zero();
-    const auto slide = [&](const Row& f, const Vec3& normal, double stiffness) {
-        sliding.noalias() += stiffness * f * f.transpose();
-        add(f, normal, -stiffness);
-    };
-    for (const LayerSlider& slider : m_layer_sliders)
-        slide(combined(slider.row, slider.weight), slider.normal, slider.stiffness);
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            AffineFields::add(sums[std::min(i, j)][std::max(i, j)], i, j, system);
-    AffineFields::add_isotropic(sliding, system);
 }
 
 void ContactHessian::limit_depth(Points& trial) const {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "gnn/physics/energy/incremental_potential.h"
-#include "gnn/physics/solver/affine_fields.h"
 #include "gnn/physics/solver/goal_hessian.h"
+#include "gnn/physics/solver/stiffness.h"
 
 namespace cloth {
 
@@ -41,17 +41,33 @@ class ContactHessian {
     /// deeper. Returns whether any block is not zero.
     bool anticipate(const Points& step);
 
-    // What follows is about the blocks that anticipate() has left.
+    // What follows is about what anticipate() has left.
 
-    /// product += blocks * direction (free, n x 3).
+    /// What contact, friction and a goal add up to at one vertex.
+    struct Block {
+        int row;
+        Stiffness stiffness;
+    };
+    /// Ascending by row, but for goals, which come last.
+    const std::vector<Block>& blocks() const { return m_blocks; }
+
+    /// What holds a weighted sum of rows: a force of stiffness * sum, shared out by the weights.
+    struct Coupling {
+        std::array<int, 4> row;        ///< 0 for a pin
+        std::array<double, 4> weight;  ///< 0 for a pin
+        Stiffness stiffness;
+    };
+    /// visit(coupling) for ridges, layers that slide and self-contact, always in the same order.
+    template <class Visit>
+    void for_each_coupling(const Visit& visit) const;
+    /// No more than these are visited before the next begin_step().
+    size_t most_couplings() const {
+        return m_ridges.size() + m_layer_sliders.size() + m_self_contacts.size();
+    }
+
+    /// product += (blocks and couplings) * direction (free, n x 3), slow and obvious: solves go
+    /// through ContactShares.
     void add_product(const Points& direction, Points& product) const;
-
-    /// moments += F' blocks * direction, F: fields of the free vertices.
-    void add_moments(const AffineFields& fields, const Points& direction,
-                     AffineFields::Coefficients& moments) const;
-
-    /// system += F' blocks F, F: fields of the free vertices.
-    void add_to(const AffineFields& fields, AffineFields::System& system) const;
 
     /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal, and those that
     /// are too far from their goals back.
@@ -104,37 +120,10 @@ class ContactHessian {
 
         double along(const Points& direction) const;  ///< of a free array (n x 3)
     };
-    /// What contact, friction and a goal add up to at one vertex, packed: blocks are gone through
-    /// twice in each iteration of a solve.
-    struct Block {
-        int row;
-        double xx, xy, xz, yy, yz, zz;  ///< (N/m)
-
-        explicit Block(int of) : row(of), xx(0), xy(0), xz(0), yy(0), yz(0), zz(0) {}
-        /// Adds across I + (along - across) n n'.
-        void add(const Vec3& n, double along, double across);
-        void add(const Eigen::Matrix3d& symmetric);
-        /// Subtracts v v'.
-        void subtract(const Vec3& v);
-    };
-    /// Those of the self-contacts that have a stiffness, packed: they are gone through twice in
-    /// each iteration of a solve. Single precision changes the direction of a step by a rounding.
-    struct Spring {
-        std::array<int, 4> row;       ///< 0 for a pin
-        std::array<float, 4> weight;  ///< 0 for a pin
-        std::array<float, 3> normal;
-        float stiffness;  ///< (N/m)
-    };
-
-    /// visit(free row, force) for the parts of blocks * direction.
-    template <class Visit>
-    void for_each_force(const Points& direction, const Visit& visit) const;
     void begin_vertices(const IncrementalPotential& potential, const std::vector<int>& row_of);
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
     void begin_layer_friction(const LayerFriction& friction, const std::vector<int>& row_of);
     void gather_blocks();
-    void gather_springs();
-    void add_springs(const Points& direction, Points& product) const;
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
 
@@ -147,11 +136,38 @@ class ContactHessian {
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
     std::vector<LayerSlider> m_layer_sliders;  ///< its layer_friction().sliders()
     std::vector<Block> m_blocks;
-    std::vector<Spring> m_springs;
-    mutable Points m_spring_forces;  ///< n x 3, scratch
+    bool m_anticipated = false;
     const SelfContactEnergy* m_self = nullptr;
     GoalHessian m_goals;
     Points m_from;  ///< |V| x 3 (m): the point of linearisation, if there is self-contact
 };
+
+template <class Visit>
+void ContactHessian::for_each_coupling(const Visit& visit) const {
+    if (!m_anticipated) return;
+    Coupling coupling;
+    const auto show = [&](const Vec3& normal, double along, double across) {
+        coupling.stiffness = {};
+        coupling.stiffness.add(normal, along, across);
+        visit(static_cast<const Coupling&>(coupling));
+    };
+    for (const Ridge& ridge : m_ridges) {
+        if (!(ridge.stiffness > 0.0)) continue;
+        coupling.row = {ridge.row[0], ridge.row[1], ridge.row[2], 0};
+        coupling.weight = {ridge.weight[0], ridge.weight[1], ridge.weight[2], 0.0};
+        show(ridge.normal, ridge.stiffness, 0.0);
+    }
+    for (const LayerSlider& slider : m_layer_sliders) {
+        coupling.row = slider.row;
+        coupling.weight = slider.weight;
+        show(slider.normal, 0.0, slider.stiffness);
+    }
+    for (const SelfContact& contact : m_self_contacts) {
+        if (!(contact.stiffness > 0.0)) continue;
+        coupling.row = contact.row;
+        coupling.weight = contact.weight;
+        show(contact.normal, contact.stiffness, 0.0);
+    }
+}
 
 }  // namespace cloth

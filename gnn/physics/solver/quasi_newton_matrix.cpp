@@ -2,22 +2,10 @@
 
 #include <algorithm>
 
-#include "gnn/physics/solver/dot.h"
-
 namespace cloth {
 
 QuasiNewtonMatrix::QuasiNewtonMatrix(const Garment& garment)
     : m_vertex_count(garment.vertex_count()), m_system(QuasiNewtonSystem::of(garment)) {
-    for (Points* array : {&m_residual, &m_preconditioned, &m_direction, &m_product, &m_p_direction})
-        array->resize(free_count(), 3);
-}
-
-void QuasiNewtonMatrix::precondition(const Points& b, Points& out) const {
-    const QuasiNewtonSystem::Factor& factor = *m_factors.front();
-    if (factor.fast.size() > 0)
-        factor.fast.solve(b, out);
-    else
-        factor.exact.solve(b, out);
 }
 
 bool QuasiNewtonMatrix::prepare(const Garment& garment, double dt) {
@@ -77,6 +65,10 @@ void QuasiNewtonMatrix::deflate(const Points& x) {
     const double dt = m_factors.front()->dt;
     m_affine.take(m_points, m_system->laplacian(), m_system->fabric().longitudinal(),
                   m_system->masses(), 1.0 / (dt * dt));
+    if (m_factors.front()->fast.size() > 0)
+        m_fast_cg.take_fields(m_affine);
+    else
+        m_exact_cg.take_fields(m_affine);
     m_deflated = true;
     m_deflated_factor = m_factors.front();
 }
@@ -88,44 +80,23 @@ bool QuasiNewtonMatrix::deflate_as_before() {
 
 void QuasiNewtonMatrix::solve(const Points& b, ContactHessian& contacts, int iterations,
                               Points& out) const {
-    m_residual = b;
-    precondition(m_residual, m_preconditioned);
-    if (!contacts.anticipate(m_preconditioned)) return solve(b, out);
-    double power = dot(m_residual, m_preconditioned);
-    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
-    const bool deflated = m_deflated && m_affine.factorise(contacts);
-    if (deflated) {
-        m_affine.solve(b, out, m_product);
-        contacts.add_product(out, m_product);
-        m_residual -= m_product;
-        precondition(m_residual, m_preconditioned);
-        power = dot(m_residual, m_preconditioned);
-    } else {
-        out.setZero(b.rows(), 3);
-    }
-    m_direction.setZero(b.rows(), 3);
-    // P times the direction follows from the residuals, so that P itself is never multiplied.
-    m_p_direction.setZero(b.rows(), 3);
-    double beta = 0.0;
-    for (int k = 0; power > enough; ++k) {
-        if (deflated) {
-            m_affine.add_conjugate(contacts, m_preconditioned, m_residual, beta, m_direction,
-                                   m_p_direction);
-        } else {
-            m_direction = m_preconditioned + beta * m_direction;
-            m_p_direction = m_residual + beta * m_p_direction;
-        }
-        m_product = m_p_direction;
-        contacts.add_product(m_direction, m_product);
-        const double step = power / dot(m_direction, m_product);
-        out += step * m_direction;
-        if (k + 1 >= iterations) break;
-        m_residual -= step * m_product;
-        precondition(m_residual, m_preconditioned);
-        const double next_power = dot(m_residual, m_preconditioned);
-        beta = next_power / power;
-        power = next_power;
-    }
+    const QuasiNewtonSystem::Factor& factor = *m_factors.front();
+    if (factor.fast.size() > 0)
+        solve(factor.fast, m_fast_cg, b, contacts, iterations, out);
+    else if (factor.exact.size() > 0)
+        solve(factor.exact, m_exact_cg, b, contacts, iterations, out);
+    else
+        solve(b, out);
+}
+
+template <class Real>
+void QuasiNewtonMatrix::solve(const SupernodalCholesky<Real>& factor, DeflatedCg<Real>& cg,
+                              const Points& b, ContactHessian& contacts, int iterations,
+                              Points& out) const {
+    if (contacts.anticipate(cg.start(factor, b)))
+        cg.solve(contacts, m_deflated ? &m_affine : nullptr, iterations, out);
+    else
+        solve(b, out);
 }
 
 }  // namespace cloth

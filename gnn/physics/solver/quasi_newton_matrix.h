@@ -6,6 +6,7 @@
 
 #include "gnn/physics/solver/affine_correction.h"
 #include "gnn/physics/solver/contact_hessian.h"
+#include "gnn/physics/solver/deflated_cg.h"
 #include "gnn/physics/solver/quasi_newton_system.h"
 
 namespace cloth {
@@ -65,8 +66,9 @@ class QuasiNewtonMatrix {
     Eigen::SparseMatrix<double> matrix() const;  ///< P (n x n), both triangles
 
  private:
-    /// out = P^-1 b, to single precision where that suffices.
-    void precondition(const Points& b, Points& out) const;
+    template <class Real>
+    void solve(const SupernodalCholesky<Real>& factor, DeflatedCg<Real>& cg, const Points& b,
+               ContactHessian& contacts, int iterations, Points& out) const;
 
     Eigen::Index m_vertex_count;
     std::shared_ptr<QuasiNewtonSystem> m_system;
@@ -76,8 +78,9 @@ class QuasiNewtonMatrix {
     bool m_deflated = false;
     std::weak_ptr<const QuasiNewtonSystem::Factor> m_deflated_factor;  ///< P of m_affine
     mutable AffineCorrection m_affine;
-    Points m_points;  ///< n x 3 (m)
-    mutable Points m_residual, m_preconditioned, m_direction, m_product, m_p_direction;  ///< n x 3
+    Points m_points;                      ///< n x 3 (m)
+    mutable DeflatedCg<float> m_fast_cg;  ///< of the two, that of the factor in use is
+    mutable DeflatedCg<double> m_exact_cg;
 };
 
 }  // namespace cloth

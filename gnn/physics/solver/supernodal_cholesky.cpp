@@ -4,11 +4,11 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <numeric>
-#include <type_traits>
 #include <utility>
+
+#include "gnn/physics/solver/lanes.h"
 
 namespace cloth {
 namespace {
@@ -16,24 +16,6 @@ namespace {
 constexpr int max_width = 8;          // columns of a panel: their y stay in eight vector registers
 constexpr double max_padding = 0.25;  // share of explicit zeros that is cheaper than another panel
 constexpr size_t enough_numbers = 60000;  // of a factor, to be worth waking a second thread for
-
-// x, y, z and a spare lane. Loads and stores go through memcpy: the memory is aligned for one lane.
-using FloatLanes = float __attribute__((vector_size(16)));
-using DoubleLanes = double __attribute__((vector_size(32)));
-template <class Real>
-using Lanes = std::conditional_t<std::is_same_v<Real, float>, FloatLanes, DoubleLanes>;
-
-template <class Real>
-inline Lanes<Real> load(const Real* p) {
-    Lanes<Real> v;
-    std::memcpy(&v, p, sizeof(v));
-    return v;
-}
-
-template <class Real>
-inline void store(Real* p, const Lanes<Real>& v) {
-    std::memcpy(p, &v, sizeof(v));
-}
 
 // y = T^-1 y within the panel's columns, then work[row] -= B y for the rows below.
 template <class Real, int W>
@@ -166,6 +148,8 @@ void SupernodalCholesky<Real>::build_panels(const Eigen::SparseMatrix<double>& l
         append_panel(lower, first, panel_width(lower, first));
     cut_in_halves();
     give_second_half_copies();
+    find_parts();
+    find_rows();
 }
 
 template <class Real>
@@ -213,14 +197,14 @@ void SupernodalCholesky<Real>::cut_in_halves() {
         if (parent[p] >= 0) weights[static_cast<size_t>(parent[p])] += weights[p];
     }
 
-    constexpr char top = 2;
+    constexpr char in_top = 2;
     std::vector<char> place;  // of the roots of subtrees
     size_t top_weight = 0, least = std::numeric_limits<size_t>::max();
     for (int cut = 0; cut < most_cuts && !open.empty(); ++cut) {
         const Shares shares(open, weights);
         if (top_weight + shares.larger < least) {
             least = top_weight + shares.larger;
-            place.assign(count, top);
+            place.assign(count, in_top);
             for (size_t k = 0; k < open.size(); ++k)
                 place[static_cast<size_t>(open[k])] = shares.of[k];
         }
@@ -234,10 +218,10 @@ void SupernodalCholesky<Real>::cut_in_halves() {
         open.insert(open.end(), below.begin(), below.end());
     }
     for (size_t p = count; p-- > 0;)
-        if (parent[p] >= 0 && place[static_cast<size_t>(parent[p])] != top)
+        if (parent[p] >= 0 && place[static_cast<size_t>(parent[p])] != in_top)
             place[p] = place[static_cast<size_t>(parent[p])];
     for (size_t p = 0; p < count; ++p) {
-        auto& panels = place[p] == top ? m_top : m_halves[static_cast<size_t>(place[p])];
+        auto& panels = place[p] == in_top ? m_top : m_halves[static_cast<size_t>(place[p])];
         panels.push_back(static_cast<int>(p));
     }
 }
@@ -276,19 +260,48 @@ double SupernodalCholesky<Real>::critical_share() const {
 }
 
 template <class Real>
-void SupernodalCholesky<Real>::take(const std::vector<int>& panels, const Points& b,
-                                    Real* work) const {
-    for (const int p : panels) {
-        const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
-        const double* from = b.data() + 3 * static_cast<size_t>(panel.first);
-        Real* to = work + 4 * static_cast<size_t>(panel.first);
-        for (int c = 0; c < panel.width; ++c, from += 3, to += 4)
-            for (int k = 0; k < 3; ++k) to[k] = static_cast<Real>(from[k]);
+void SupernodalCholesky<Real>::find_parts() {
+    m_part_of.assign(static_cast<size_t>(m_size), static_cast<unsigned char>(Crew::top));
+    for (size_t half = 0; half < 2; ++half)
+        for (const int p : m_halves[half]) {
+            const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
+            std::fill_n(m_part_of.begin() + panel.first, panel.width,
+                        static_cast<unsigned char>(half));
+        }
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::find_rows() {
+    for (auto& rows : m_rows_of) rows.clear();
+    for (size_t row = 0; row < m_part_of.size(); ++row) {
+        auto& rows = m_rows_of[m_part_of[row]];
+        const int at = static_cast<int>(row);
+        if (rows.empty() || rows.back().end != at) rows.push_back({at, at});
+        ++rows.back().end;
     }
 }
 
 template <class Real>
-void SupernodalCholesky<Real>::eliminate(const std::vector<int>& panels, Real* work) const {
+int SupernodalCholesky<Real>::threads() const {
+    return m_values.size() < enough_numbers ? 1 : std::min(2, omp_get_max_threads());
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::take(size_t part, const Points& b, Real* work) const {
+    for (const Rows& rows : m_rows_of[part])
+        for (int row = rows.begin; row < rows.end; ++row)
+            for (int k = 0; k < 3; ++k) work[4 * row + k] = static_cast<Real>(b(row, k));
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::give(size_t part, const Real* work, Points& x) const {
+    for (const Rows& rows : m_rows_of[part])
+        for (int row = rows.begin; row < rows.end; ++row)
+            for (int k = 0; k < 3; ++k) x(row, k) = double(work[4 * row + k]);
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::eliminate_panels(const std::vector<int>& panels, Real* work) const {
     for (const int p : panels) {
         const SupernodalPanel& panel = m_panels[static_cast<size_t>(p)];
         OfWidth<Real>::eliminate[panel.width - 1](m_values.data() + panel.values_begin,
@@ -298,54 +311,52 @@ void SupernodalCholesky<Real>::eliminate(const std::vector<int>& panels, Real* w
 }
 
 template <class Real>
-void SupernodalCholesky<Real>::substitute_back(const std::vector<int>& panels, Real* work,
-                                               Points& x) const {
+void SupernodalCholesky<Real>::substitute_back_panels(const std::vector<int>& panels,
+                                                      Real* work) const {
     for (auto p = panels.rbegin(); p != panels.rend(); ++p) {
         const SupernodalPanel& panel = m_panels[static_cast<size_t>(*p)];
-        Real* own = work + 4 * static_cast<size_t>(panel.first);
-        OfWidth<Real>::substitute_back[panel.width - 1](m_values.data() + panel.values_begin,
-                                                        m_rows.data() + panel.rows_begin,
-                                                        panel.row_count, own, work);
-        double* to = x.data() + 3 * static_cast<size_t>(panel.first);
-        for (int c = 0; c < panel.width; ++c, own += 4, to += 3)
-            for (int k = 0; k < 3; ++k) to[k] = double(own[k]);
+        OfWidth<Real>::substitute_back[panel.width - 1](
+            m_values.data() + panel.values_begin, m_rows.data() + panel.rows_begin, panel.row_count,
+            work + 4 * panel.first, work);
     }
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::solve_top(Real* work) const {
+    Real* const copy = work + 4 * m_size;
+    const auto top_row = [&](size_t k) { return work + 4 * static_cast<size_t>(m_top_rows[k]); };
+    for (size_t k = 0; k < m_top_rows.size(); ++k)
+        store<Real>(top_row(k), load(top_row(k)) + load(copy + 4 * k));
+    eliminate_panels(m_top, work);
+    substitute_back_panels(m_top, work);
+    for (size_t k = 0; k < m_top_rows.size(); ++k) store<Real>(copy + 4 * k, load(top_row(k)));
+}
+
+template <class Real>
+void SupernodalCholesky<Real>::solve(const Crew& crew, Real* work) const {
+    crew.for_halves([&](size_t half) {
+        if (half == 1) std::fill_n(work + 4 * m_size, 4 * m_top_rows.size(), Real(0));
+        eliminate_panels(m_halves[half], work);
+    });
+    Crew::wait();
+    if (crew.leads()) solve_top(work);
+    Crew::wait();
+    crew.for_halves([&](size_t half) { substitute_back_panels(m_halves[half], work); });
 }
 
 template <class Real>
 void SupernodalCholesky<Real>::solve(const Points& b, Points& x) const {
     static thread_local std::vector<Real> lanes;  // x, y, z, and 0 for ever
-    const auto count = static_cast<size_t>(m_size), copies = m_top_rows.size();
-    if (lanes.size() < 4 * (count + copies)) lanes.resize(4 * (count + copies), Real(0));
+    if (lanes.size() < 4 * work_rows()) lanes.resize(4 * work_rows(), Real(0));
     x.resize(b.rows(), 3);
     Real* const work = lanes.data();
-    Real* const copy = work + 4 * count;
-    const auto top_row = [&](size_t k) { return work + 4 * static_cast<size_t>(m_top_rows[k]); };
-    const int together = m_values.size() < enough_numbers ? 1 : std::min(2, omp_get_max_threads());
+    const int together = threads();
 #pragma omp parallel num_threads(together) if (together > 1)
     {
-        const auto threads = static_cast<size_t>(omp_get_num_threads());
-        const auto first = static_cast<size_t>(omp_get_thread_num());
-        for (size_t half = first; half < 2; half += threads) {
-            take(m_halves[half], b, work);
-            if (half == 0)
-                take(m_top, b, work);
-            else
-                std::fill_n(copy, 4 * copies, Real(0));
-            eliminate(m_halves[half], work);
-        }
-#pragma omp barrier
-#pragma omp master
-        {
-            for (size_t k = 0; k < copies; ++k)
-                store<Real>(top_row(k), load(top_row(k)) + load(copy + 4 * k));
-            eliminate(m_top, work);
-            substitute_back(m_top, work, x);
-            for (size_t k = 0; k < copies; ++k) store<Real>(copy + 4 * k, load(top_row(k)));
-        }
-#pragma omp barrier
-        for (size_t half = first; half < 2; half += threads)
-            substitute_back(m_halves[half], work, x);
+        const Crew crew;
+        crew.for_parts([&](size_t part) { take(part, b, work); });
+        solve(crew, work);
+        crew.for_parts([&](size_t part) { give(part, work, x); });
     }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "data/core/types.h"
+#include "gnn/physics/solver/crew.h"
 
 namespace cloth {
 
@@ -32,6 +33,9 @@ struct SupernodalPanel {
 ///     SupernodalCholesky<double> factor;
 ///     if (factor.factorise(matrix)) factor.solve(b, x);
 ///
+/// Who solves many times in a row keeps the vectors in the factor's own layout, four lanes of Real
+/// (x, y, z, 0) a row, and shares out the work on rows as the factor does: see Crew.
+///
 /// Several threads may solve with one object at once.
 ///
 /// @tparam Real  of the factor and of the solve, which take half the memory and two thirds of the
@@ -55,10 +59,29 @@ class SupernodalCholesky {
           m_values(factor.m_values.begin(), factor.m_values.end()),
           m_halves(factor.m_halves),
           m_top(factor.m_top),
-          m_top_rows(factor.m_top_rows) {}
+          m_top_rows(factor.m_top_rows),
+          m_part_of(factor.m_part_of) {
+        find_rows();
+    }
 
     /// x = A^-1 b for three columns (n x 3); b and x may be the same object.
     void solve(const Points& b, Points& x) const;
+
+    /// Unknowns begin .. end - 1.
+    struct Rows {
+        int begin, end;
+    };
+    /// Those of a part (of Crew's), ascending.
+    const std::vector<Rows>& rows(size_t part) const { return m_rows_of[part]; }
+    /// n: which part each unknown is in.
+    const std::vector<unsigned char>& part_of() const { return m_part_of; }
+    /// Of the array that a solve in place works on: n, and some to spare.
+    size_t work_rows() const { return static_cast<size_t>(m_size) + m_top_rows.size(); }
+    /// work = A^-1 work (work_rows() x 4). All threads of a crew call it: each finds its parts of
+    /// b where it put them, and leaves its parts of x.
+    void solve(const Crew& crew, Real* work) const;
+    /// Threads that a solve is worth: 2, or 1 where the factor is small or OpenMP gives no more.
+    int threads() const;
 
     Eigen::Index size() const { return m_size; }
     size_t nonzeros() const { return m_values.size(); }  ///< stored, with the padding of the panels
@@ -74,10 +97,14 @@ class SupernodalCholesky {
     void append_panel(const Eigen::SparseMatrix<double>& lower, int first, int width);
     void cut_in_halves();
     void give_second_half_copies();
+    void find_parts();
+    void find_rows();
     size_t numbers(const std::vector<int>& panels) const;
-    void take(const std::vector<int>& panels, const Points& b, Real* work) const;
-    void eliminate(const std::vector<int>& panels, Real* work) const;
-    void substitute_back(const std::vector<int>& panels, Real* work, Points& x) const;
+    void take(size_t part, const Points& b, Real* work) const;
+    void give(size_t part, const Real* work, Points& x) const;
+    void solve_top(Real* work) const;
+    void eliminate_panels(const std::vector<int>& panels, Real* work) const;
+    void substitute_back_panels(const std::vector<int>& panels, Real* work) const;
 
     Eigen::Index m_size = 0;  ///< n
     std::vector<SupernodalPanel> m_panels;
@@ -86,6 +113,8 @@ class SupernodalCholesky {
     std::array<std::vector<int>, 2> m_halves;  ///< panels, ascending: no row of one is in the other
     std::vector<int> m_top;                    ///< panels, ascending: ancestors of the halves
     std::vector<int> m_top_rows;  ///< of the top's columns; row k has its copy at m_size + k
+    std::vector<unsigned char> m_part_of;        ///< n
+    std::array<std::vector<Rows>, 3> m_rows_of;  ///< each part
 };
 
 }  // namespace cloth

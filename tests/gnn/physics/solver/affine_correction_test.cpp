@@ -100,7 +100,10 @@ TEST(AffineCorrection, TheBlocksOnFieldsAreThoseOfTheirProducts) {
     AffineFields fields;
     fields.take(pressed.free);
     AffineFields::System system = AffineFields::System::Zero();
-    pressed.contacts.add_to(fields, system);
+    ContactShares<double> shares;
+    const std::vector<unsigned char> part_of(static_cast<size_t>(pressed.free.rows()), 0);
+    shares.take(pressed.contacts, 0, part_of, fields.columns().data());
+    shares.add_to(fields.columns().data(), system);
     for (int column = 0; column < system.cols(); ++column) {
         AffineFields::Coefficients unit = AffineFields::Coefficients::Zero();
         unit(column / 3, column % 3) = 1.0;
@@ -116,15 +119,17 @@ TEST(AffineCorrection, TheBlocksOnFieldsAreThoseOfTheirProducts) {
 TEST(AffineCorrection, AnAffineAnswerIsFoundAtOnce) {
     Pressed pressed(10);
     const Points expected = pressed.affine(1e-5 * some_gradient(), Vec3(1e-5, -2e-5, 3e-5));
-    const Points b = pressed.product(expected);
+    const Points b = pressed.matrix.matrix() * expected;
     AffineCorrection correction;
     const Eigen::SparseMatrix<double> p = pressed.matrix.matrix();
     correction.take(pressed.free, p, 1.0, VectorX::Zero(p.rows()), 0.0);
-    ASSERT_TRUE(correction.factorise(pressed.contacts));
-    Points found, p_found;
-    correction.solve(b, found, p_found);
+    ASSERT_TRUE(correction.factorise(AffineFields::System::Zero()));
+    const AffineFields::Coefficients c = correction.coefficients(correction.fields().moments(b));
+    const Points found = correction.fields().columns() * c;
+    const Points p_found = correction.p_columns() * c;
     EXPECT_LE((found - expected).norm(), 1e-8 * expected.norm());
     EXPECT_LE((p_found - p * found).norm(), 1e-10 * b.norm());
+    EXPECT_NEAR(correction.energy(c), found.cwiseProduct(b).sum(), 1e-8 * correction.energy(c));
 }
 
 TEST(AffineCorrection, ResidualsHaveNoAffinePartAfterAnyNumberOfIterations) {

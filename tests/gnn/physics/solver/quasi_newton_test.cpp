@@ -338,6 +338,7 @@ TEST(ContactHessian, BlocksOfRidgesAreTheirHessian) {
     ContactHessian model;
     model.begin_step(with, matrix.row_of());
     model.linearise(with, scene.state.x);
+    ASSERT_TRUE(model.anticipate(Points::Zero(matrix.free_count(), 3)));
     const Points direction = noise(matrix.free_count(), 1.0, 3);
     Points product = Points::Zero(direction.rows(), 3), all(scene.garment.vertex_count(), 3);
     model.add_product(direction, product);

@@ -1,0 +1,255 @@
+#include "gnn/physics/solver/deflated_cg.h"
+
+namespace cloth {
+template <class Real>
+void DeflatedCg<Real>::take_fields(const AffineCorrection& affine) {
+    const auto& fields = affine.fields().columns();
+    const auto& p_fields = affine.p_columns();
+    m_fields.assign(fields.data(), fields.data() + fields.size());
+    m_p_fields.assign(p_fields.data(), p_fields.data() + p_fields.size());
+}
+
+template <class Real>
+void DeflatedCg<Real>::allocate(const Factor& factor) {
+    m_factor = &factor;
+    const size_t lanes = 4 * static_cast<size_t>(factor.size());
+    for (std::vector<Real>* array :
+         {&m_fields, &m_p_fields, &m_residual, &m_direction, &m_p_direction})
+        array->resize(lanes, Real(0));
+    m_solution.resize(lanes, 0.0);
+    m_work.resize(4 * factor.work_rows(), Real(0));
+    m_step.resize(factor.size(), 3);
+}
+
+template <class Real>
+template <class Visit>
+void DeflatedCg<Real>::for_rows(size_t part, const Visit& visit) const {
+    for (const auto& rows : m_factor->rows(part))
+        for (int row = rows.begin; row < rows.end; ++row) visit(static_cast<size_t>(row));
+}
+
+/// Of a term for each row, in double precision; two sums, since one has to wait for each addition.
+template <class Real>
+template <class Term>
+double DeflatedCg<Real>::sum_rows(size_t part, const Term& term) const {
+    DoubleLanes even = {}, odd = {};
+    for (const auto& rows : m_factor->rows(part)) {
+        auto row = static_cast<size_t>(rows.begin);
+        const auto end = static_cast<size_t>(rows.end);
+        for (; row + 1 < end; row += 2) {
+            even += widened(term(row));
+            odd += widened(term(row + 1));
+        }
+        if (row < end) even += widened(term(row));
+    }
+    return sum(DoubleLanes(even + odd));
+}
+
+template <class Real>
+const Points& DeflatedCg<Real>::start(const Factor& factor, const Points& b) {
+    allocate(factor);
+    const int threads = factor.threads();
+#pragma omp parallel num_threads(threads) if (threads > 1)
+    {
+        const Crew crew;
+        crew.for_parts([&](size_t part) { take(part, b); });
+        factor.solve(crew, m_work.data());
+        crew.for_parts([&](size_t part) {
+            for_rows(part, [&](size_t row) {
+                for (size_t k = 0; k < 3; ++k)
+                    m_step.data()[3 * row + k] = double(m_work[4 * row + k]);
+            });
+        });
+    }
+    return m_step;
+}
+
+template <class Real>
+void DeflatedCg<Real>::take(size_t part, const Points& b) {
+    for_rows(part, [&](size_t row) {
+        const double* const from = b.data() + 3 * row;
+        const Lanes<Real> lanes = {Real(from[0]), Real(from[1]), Real(from[2]), Real(0)};
+        store<Real>(m_residual.data() + 4 * row, lanes);
+        store<Real>(m_work.data() + 4 * row, lanes);
+    });
+}
+
+template <class Real>
+void DeflatedCg<Real>::solve(const ContactHessian& contacts, AffineCorrection* affine,
+                             int iterations, Points& out) {
+    for (auto& shares : m_shares)
+        shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
+    out.resize(m_step.rows(), 3);
+    const int threads = m_factor->threads();
+#pragma omp parallel num_threads(threads) if (threads > 1)
+    iterate(Crew(), contacts, affine, iterations, out);
+}
+
+template <class Real>
+void DeflatedCg<Real>::iterate(const Crew& crew, const ContactHessian& contacts,
+                               AffineCorrection* affine, int iterations, Points& out) {
+    crew.for_parts([&](size_t part) { prepare(part, contacts, affine != nullptr); });
+    Crew::wait();
+    double power = total(&Sums::power);
+    const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
+    if (crew.leads()) m_deflated = affine && affine->factorise(total_system());
+    Crew::wait();
+    const bool deflated = m_deflated;
+    Coefficients c = Coefficients::Zero(), all = Coefficients::Zero();
+    if (deflated) {  // the affine part of the answer comes first: a step of length one
+        c = -affine->coefficients(total_moments());
+        all = c;
+        crew.for_parts([&](size_t part) { turn_affinely(part, c); });
+        Crew::wait();
+        crew.for_parts([&](size_t part) { advance(part, 1.0, c); });
+        precondition(crew, true);
+        power = total(&Sums::power);
+    }
+    double beta = 0.0, step = 0.0;
+    for (int k = 0; power > enough; ++k) {
+        // F' A z = F' r + F' blocks z, and the residual has no affine part
+        if (deflated) c = beta * c + affine->coefficients(total_moments());
+        crew.for_parts([&](size_t part) { turn(part, beta, c); });
+        Crew::wait();
+        step = power / curvature(affine, c);
+        all += step * c;
+        if (k + 1 >= iterations) break;
+        crew.for_parts([&](size_t part) { advance(part, step, c); });
+        step = 0.0;
+        precondition(crew, deflated);
+        const double next_power = total(&Sums::power);
+        beta = next_power / power;
+        power = next_power;
+    }
+    crew.for_parts([&](size_t part) { finish(part, step, all, out); });
+}
+
+template <class Real>
+void DeflatedCg<Real>::precondition(const Crew& crew, bool deflated) {
+    m_factor->solve(crew, m_work.data());
+    crew.for_parts([&](size_t part) { measure(part, deflated); });
+    Crew::wait();
+}
+
+/// d . A d. F' p_d is zero, since p_d is a sum of residuals.
+template <class Real>
+double DeflatedCg<Real>::curvature(const AffineCorrection* affine, const Coefficients& c) const {
+    return total(&Sums::curvature) + ContactShares<Real>::curvature_between(m_shares) +
+           (m_deflated ? affine->energy(c) : 0.0);
+}
+
+/// Packs the blocks, sets the answer to zero and adds up what b tells.
+template <class Real>
+void DeflatedCg<Real>::prepare(size_t part, const ContactHessian& contacts, bool deflated) {
+    Sums& sums = m_sums[part];
+    m_shares[part].take(contacts, part, m_factor->part_of(), m_fields.data());
+    sums.system.setZero();
+    if (deflated) m_shares[part].add_to(m_fields.data(), sums.system);
+    DoubleLanes moments[AffineFields::count] = {};
+    sums.power = sum_rows(part, [&](size_t row) -> Lanes<Real> {
+        const Lanes<Real> r = load(m_residual.data() + 4 * row);
+        const Lanes<Real> z = load(m_work.data() + 4 * row);
+        const DoubleLanes f = widened(load(m_fields.data() + 4 * row)), wide = widened(r);
+        for (int k = 0; k < AffineFields::count; ++k) moments[k] += f[k] * wide;
+        store(m_solution.data() + 4 * row, DoubleLanes{});
+        store<Real>(m_direction.data() + 4 * row, Lanes<Real>{});
+        store<Real>(m_p_direction.data() + 4 * row, Lanes<Real>{});
+        return r * z;
+    });
+    for (int k = 0; k < AffineFields::count; ++k) store(sums.moments[k], moments[k]);
+}
+
+/// After a solve with P.
+template <class Real>
+void DeflatedCg<Real>::measure(size_t part, bool deflated) {
+    Sums& sums = m_sums[part];
+    sums.power = sum_rows(part, [&](size_t row) -> Lanes<Real> {
+        return load(m_residual.data() + 4 * row) * load(m_work.data() + 4 * row);
+    });
+    if (!deflated) return;
+    for (auto& row : sums.moments) store(row, DoubleLanes{});
+    m_shares[part].add_moments(m_fields.data(), m_work.data(), sums.moments);
+}
+
+/// d = 0: all of the direction is affine.
+template <class Real>
+void DeflatedCg<Real>::turn_affinely(size_t part, const Coefficients& c) {
+    for_rows(part, [&](size_t row) { store<Real>(m_work.data() + 4 * row, Lanes<Real>{}); });
+    m_shares[part].add_product(m_fields.data(), FieldRows<double>(c), m_direction.data(),
+                               m_work.data());
+}
+
+/// d = z + beta d; c is so that A (d - F c) has no affine part. The direction before has none, nor
+/// has the residual. p_d follows from the residuals, so that P itself is never multiplied.
+template <class Real>
+void DeflatedCg<Real>::turn(size_t part, double beta, const Coefficients& c) {
+    const auto scale = static_cast<Real>(beta);
+    const double by_p = sum_rows(part, [&](size_t row) -> Lanes<Real> {
+        Real* const d = m_direction.data() + 4 * row;
+        Real* const p_d = m_p_direction.data() + 4 * row;
+        Real* const work = m_work.data() + 4 * row;
+        const Lanes<Real> direction = load(work) + scale * load(d);
+        const Lanes<Real> product = load(m_residual.data() + 4 * row) + scale * load(p_d);
+        store<Real>(d, direction);
+        store<Real>(p_d, product);
+        store<Real>(work, product);
+        return direction * product;
+    });
+    m_sums[part].curvature = by_p + m_shares[part].add_product(m_fields.data(), FieldRows<double>(c),
+                                                               m_direction.data(), m_work.data());
+}
+
+/// x += step d, r -= step A (d - F c), without the affine part of x.
+template <class Real>
+void DeflatedCg<Real>::advance(size_t part, double step, const Coefficients& c) {
+    m_shares[part].add_product_between(m_shares, m_work.data());
+    const auto scale = static_cast<Real>(step);
+    const FieldRows<Real> rows(c);
+    for_rows(part, [&](size_t row) {
+        double* const x = m_solution.data() + 4 * row;
+        Real* const r = m_residual.data() + 4 * row;
+        Real* const work = m_work.data() + 4 * row;
+        const Lanes<Real> product = load(work) - rows.at(m_p_fields.data() + 4 * row);
+        const Lanes<Real> residual = load(r) - scale * product;
+        store(x, load(x) + step * widened(load(m_direction.data() + 4 * row)));
+        store<Real>(r, residual);
+        store<Real>(work, residual);
+    });
+}
+
+/// out = x + step d - F all.
+template <class Real>
+void DeflatedCg<Real>::finish(size_t part, double step, const Coefficients& all,
+                              Points& out) const {
+    const FieldRows<double> rows(all);
+    for_rows(part, [&](size_t row) {
+        const DoubleLanes x = load(m_solution.data() + 4 * row) +
+                              step * widened(load(m_direction.data() + 4 * row)) -
+                              rows.at(widened(load(m_fields.data() + 4 * row)));
+        for (size_t k = 0; k < 3; ++k) out.data()[3 * row + k] = x[k];
+    });
+}
+
+template <class Real>
+double DeflatedCg<Real>::total(double Sums::*sum) const {
+    return (m_sums[0].*sum + m_sums[1].*sum) + m_sums[Crew::top].*sum;
+}
+
+template <class Real>
+AffineFields::Coefficients DeflatedCg<Real>::total_moments() const {
+    Coefficients total = Coefficients::Zero();
+    for (const Sums& sums : m_sums)
+        for (int k = 0; k < AffineFields::count; ++k)
+            total.row(k) += Eigen::Map<const Eigen::RowVector3d>(sums.moments[k]);
+    return total;
+}
+
+template <class Real>
+AffineFields::System DeflatedCg<Real>::total_system() const {
+    return m_sums[0].system + m_sums[1].system + m_sums[Crew::top].system;
+}
+
+template class DeflatedCg<float>;
+template class DeflatedCg<double>;
+
+}  // namespace cloth
