@@ -39,7 +39,8 @@ void add_to_row(const DoubleLanes& force, Real* row) {
 
 template <class Real>
 ContactShares<Real>::Columns::Columns(const Stiffness& s)
-    : of{{s.xx, s.xy, s.xz, 0.0}, {s.xy, s.yy, s.yz, 0.0}, {s.xz, s.yz, s.zz, 0.0}} {}
+    : of{{s.xx, s.xy, s.xz, 0.0}, {s.xy, s.yy, s.yz, 0.0}, {s.xz, s.yz, s.zz, 0.0}} {
+}
 
 template <class Real>
 DoubleLanes ContactShares<Real>::Share::motion(const Real* direction) const {
@@ -70,9 +71,8 @@ void ContactShares<Real>::take(const ContactHessian& contacts, size_t part,
     for (const ContactHessian::Block& block : contacts.blocks())
         if (part_of[static_cast<size_t>(block.row)] == part)
             m_blocks.push_back({block.row, Columns(block.stiffness)});
-    contacts.for_each_coupling([&](const ContactHessian::Coupling& coupling) {
-        take(coupling, part, part_of, fields);
-    });
+    contacts.for_each_coupling(
+        [&](const ContactHessian::Coupling& coupling) { take(coupling, part, part_of, fields); });
     m_motions.assign(4 * m_between.size(), 0.0);
 }
 
@@ -108,7 +108,8 @@ void ContactShares<Real>::take(const ContactHessian::Coupling& coupling, size_t 
 template <class Real>
 void ContactShares<Real>::add_to(const Real* fields, AffineFields::System& system) const {
     FieldStiffness all;
-    for (const Block& block : m_blocks) all.add(widened(load(fields + 4 * block.row)), block.stiffness.of);
+    for (const Block& block : m_blocks)
+        all.add(widened(load(fields + 4 * block.row)), block.stiffness.of);
     for (const Share& share : m_shares)
         if (share.first) all.add(load(share.field), share.stiffness.of);
     all.add_to(system);
@@ -133,8 +134,8 @@ double ContactShares<Real>::add_product(const Real* fields, const FieldRows<doub
                                         const Real* direction, Real* product) {
     DoubleLanes curvature = {};
     for (const Block& block : m_blocks) {
-        const DoubleLanes u = widened(load(direction + 4 * block.row)) -
-                              c.at(widened(load(fields + 4 * block.row)));
+        const DoubleLanes u =
+            widened(load(direction + 4 * block.row)) - c.at(widened(load(fields + 4 * block.row)));
         const DoubleLanes force = block.stiffness * u;
         add_to_row(force, product + 4 * block.row);
         curvature += u * force;

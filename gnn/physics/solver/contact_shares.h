@@ -35,8 +35,8 @@ struct FieldRows {
 ///     after that:  curvature += curvature_between(shares);
 ///     each part:   shares[part].add_product_between(shares, product);
 ///
-/// Arrays are n x 4, of Real. What is done to a row is in double precision: deep contacts are so much
-/// stiffer than the cloth that the rounding of a sliding motion would be felt as a force.
+/// Arrays are n x 4, of Real. What is done to a row is in double precision: deep contacts are so
+/// much stiffer than the cloth that the rounding of a sliding motion would be felt as a force.
 template <class Real>
 class ContactShares {
  public:
@@ -78,9 +78,9 @@ class ContactShares {
         Columns stiffness;
     };
     struct Share {
-        int between;     ///< number among the couplings of several parts, or none
-        bool first;      ///< of the parts that have a share
-        int row[4];      ///< rows of this part
+        int between;       ///< number among the couplings of several parts, or none
+        bool first;        ///< of the parts that have a share
+        int row[4];        ///< rows of this part
         double weight[4];  ///< 0 for those to spare
         Columns stiffness;
         double field[4];  ///< how far each field moves the weighted sum, of all parts
@@ -96,7 +96,7 @@ class ContactShares {
     std::vector<Block> m_blocks;
     std::vector<Share> m_shares;
     std::vector<Columns> m_between;  ///< those of several parts, whichever these are
-    std::vector<double> m_motions;     ///< |between| x 4: this part of their sums
+    std::vector<double> m_motions;   ///< |between| x 4: this part of their sums
 };
 
 }  // namespace cloth

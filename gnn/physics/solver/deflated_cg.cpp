@@ -77,8 +77,7 @@ void DeflatedCg<Real>::take(size_t part, const Points& b) {
 template <class Real>
 void DeflatedCg<Real>::solve(const ContactHessian& contacts, AffineCorrection* affine,
                              int iterations, Points& out) {
-    for (auto& shares : m_shares)
-        shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
+    for (auto& shares : m_shares) shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
     out.resize(m_step.rows(), 3);
     const int threads = m_factor->threads();
 #pragma omp parallel num_threads(threads) if (threads > 1)
@@ -195,8 +194,9 @@ void DeflatedCg<Real>::turn(size_t part, double beta, const Coefficients& c) {
         store<Real>(work, product);
         return direction * product;
     });
-    m_sums[part].curvature = by_p + m_shares[part].add_product(m_fields.data(), FieldRows<double>(c),
-                                                               m_direction.data(), m_work.data());
+    m_sums[part].curvature =
+        by_p + m_shares[part].add_product(m_fields.data(), FieldRows<double>(c), m_direction.data(),
+                                          m_work.data());
 }
 
 /// x += step d, r -= step A (d - F c), without the affine part of x.

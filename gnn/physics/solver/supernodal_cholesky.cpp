@@ -54,6 +54,18 @@ void substitute_back(const Real* values, const int* rows, int row_count, Real* o
     }
 }
 
+// x = strip of an inverse * b.
+template <class Real, size_t rows>
+void multiply(const Real* strip, const Real* b, size_t count, Real* x) {
+    Lanes<Real> sums[rows];
+    for (size_t i = 0; i < rows; ++i) sums[i] = Lanes<Real>{};
+    for (size_t k = 0; k < count; ++k, strip += rows) {
+        const Lanes<Real> known = load(b + 4 * k);
+        for (size_t i = 0; i < rows; ++i) sums[i] += strip[i] * known;
+    }
+    for (size_t i = 0; i < rows; ++i) store<Real>(x + 4 * i, sums[i]);
+}
+
 template <class Real>
 struct OfWidth {
     using Eliminate = void (*)(const Real*, const int*, int, Real*, Real*);
@@ -127,13 +139,21 @@ std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix) {
     return {order.data(), order.data() + order.size()};
 }
 
-template <class Real>
-bool SupernodalCholesky<Real>::factorise(const Eigen::SparseMatrix<double>& matrix) {
+template <>
+bool SupernodalCholesky<double>::factorise(const Eigen::SparseMatrix<double>& matrix) {
     Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
         cholesky(matrix);
     if (cholesky.info() != Eigen::Success) return false;
     m_size = matrix.rows();
     build_panels(Eigen::SparseMatrix<double>(cholesky.matrixL()));
+    return true;
+}
+
+template <>
+bool SupernodalCholesky<float>::factorise(const Eigen::SparseMatrix<double>& matrix) {
+    SupernodalCholesky<double> exact;
+    if (!exact.factorise(matrix)) return false;
+    *this = SupernodalCholesky(exact);
     return true;
 }
 
@@ -150,6 +170,7 @@ void SupernodalCholesky<Real>::build_panels(const Eigen::SparseMatrix<double>& l
     give_second_half_copies();
     find_parts();
     find_rows();
+    invert_top();
 }
 
 template <class Real>
@@ -255,8 +276,10 @@ size_t SupernodalCholesky<Real>::numbers(const std::vector<int>& panels) const {
 
 template <class Real>
 double SupernodalCholesky<Real>::critical_share() const {
-    const size_t larger = std::max(numbers(m_halves[0]), numbers(m_halves[1]));
-    return double(numbers(m_top) + larger) / double(std::max(m_values.size(), size_t(1)));
+    const size_t first = numbers(m_halves[0]), second = numbers(m_halves[1]);
+    const size_t inverse = m_top_rows.size() * m_top_rows.size();
+    return double(2 * std::max(first, second) + inverse / 2) /
+           double(std::max(2 * (first + second) + inverse, size_t(1)));
 }
 
 template <class Real>
@@ -321,15 +344,47 @@ void SupernodalCholesky<Real>::substitute_back_panels(const std::vector<int>& pa
     }
 }
 
+/// Solves with the top's panels for the unit vectors, three at a time.
 template <class Real>
-void SupernodalCholesky<Real>::solve_top(Real* work) const {
-    Real* const copy = work + 4 * m_size;
-    const auto top_row = [&](size_t k) { return work + 4 * static_cast<size_t>(m_top_rows[k]); };
-    for (size_t k = 0; k < m_top_rows.size(); ++k)
-        store<Real>(top_row(k), load(top_row(k)) + load(copy + 4 * k));
-    eliminate_panels(m_top, work);
-    substitute_back_panels(m_top, work);
-    for (size_t k = 0; k < m_top_rows.size(); ++k) store<Real>(copy + 4 * k, load(top_row(k)));
+void SupernodalCholesky<Real>::invert_top() {
+    const size_t count = m_top_rows.size();
+    m_top_inverse.assign(strip * strips() * count, Real(0));
+    std::vector<Real> work(4 * static_cast<size_t>(m_size), Real(0));
+    const auto top_row = [&](size_t k) { return &work[4 * static_cast<size_t>(m_top_rows[k])]; };
+    for (size_t first = 0; first < count; first += 3) {
+        const size_t columns = std::min(count - first, size_t(3));
+        for (size_t k = 0; k < count; ++k) std::fill_n(top_row(k), 4, Real(0));
+        for (size_t c = 0; c < columns; ++c) top_row(first + c)[c] = Real(1);
+        eliminate_panels(m_top, work.data());
+        substitute_back_panels(m_top, work.data());
+        for (size_t k = 0; k < count; ++k)
+            for (size_t c = 0; c < columns; ++c)
+                m_top_inverse[(k / strip * count + first + c) * strip + k % strip] = top_row(k)[c];
+    }
+}
+
+/// Half of the rows of the top, for which each thread gathers what both halves have left there.
+template <class Real>
+void SupernodalCholesky<Real>::solve_top(size_t half, Real* work) const {
+    const size_t count = m_top_rows.size();
+    const Real* const copy = work + 4 * m_size;
+    Real* const gathered = work + 4 * gathered_begin(half);
+    for (size_t k = 0; k < count; ++k)
+        store<Real>(gathered + 4 * k, load(work + 4 * m_top_rows[k]) + load(copy + 4 * k));
+    const size_t middle = strips() / 2;
+    for (size_t k = half == 0 ? 0 : middle; k < (half == 0 ? middle : strips()); ++k)
+        multiply<Real, strip>(m_top_inverse.data() + k * count * strip, gathered, count,
+                              work + 4 * (product_begin() + k * strip));
+}
+
+/// To where the half's panels look for the top.
+template <class Real>
+void SupernodalCholesky<Real>::take_top(size_t half, Real* work) const {
+    const Real* const product = work + 4 * product_begin();
+    for (size_t k = 0; k < m_top_rows.size(); ++k) {
+        Real* const to = work + 4 * (half == 0 ? m_top_rows[k] : m_size + static_cast<int>(k));
+        store<Real>(to, load(product + 4 * k));
+    }
 }
 
 template <class Real>
@@ -339,9 +394,12 @@ void SupernodalCholesky<Real>::solve(const Crew& crew, Real* work) const {
         eliminate_panels(m_halves[half], work);
     });
     Crew::wait();
-    if (crew.leads()) solve_top(work);
+    crew.for_halves([&](size_t half) { solve_top(half, work); });
     Crew::wait();
-    crew.for_halves([&](size_t half) { substitute_back_panels(m_halves[half], work); });
+    crew.for_halves([&](size_t half) {
+        take_top(half, work);
+        substitute_back_panels(m_halves[half], work);
+    });
 }
 
 template <class Real>

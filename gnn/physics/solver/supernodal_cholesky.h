@@ -28,6 +28,8 @@ struct SupernodalPanel {
 /// most eight columns, and the coordinates of a vertex travel together in one vector register. The
 /// elimination tree is cut into two halves and a top: what the halves do, two threads do at once
 /// (where the matrix is large enough, and OpenMP gives two). The answer has the same bits with one.
+/// Of the top, which is small and all but dense, the inverse is kept: the threads share its rows,
+/// and none of them waits for another.
 ///
 ///     const std::vector<int> order = elimination_order(matrix);  // number the unknowns by it
 ///     SupernodalCholesky<double> factor;
@@ -60,6 +62,7 @@ class SupernodalCholesky {
           m_halves(factor.m_halves),
           m_top(factor.m_top),
           m_top_rows(factor.m_top_rows),
+          m_top_inverse(factor.m_top_inverse.begin(), factor.m_top_inverse.end()),
           m_part_of(factor.m_part_of) {
         find_rows();
     }
@@ -76,7 +79,7 @@ class SupernodalCholesky {
     /// n: which part each unknown is in.
     const std::vector<unsigned char>& part_of() const { return m_part_of; }
     /// Of the array that a solve in place works on: n, and some to spare.
-    size_t work_rows() const { return static_cast<size_t>(m_size) + m_top_rows.size(); }
+    size_t work_rows() const { return gathered_begin(1) + m_top_rows.size(); }
     /// work = A^-1 work (work_rows() x 4). All threads of a crew call it: each finds its parts of
     /// b where it put them, and leaves its parts of x.
     void solve(const Crew& crew, Real* work) const;
@@ -85,8 +88,8 @@ class SupernodalCholesky {
 
     Eigen::Index size() const { return m_size; }
     size_t nonzeros() const { return m_values.size(); }  ///< stored, with the padding of the panels
-    /// Of the numbers that a solve goes through, those that two threads have to, one after the
-    /// other: 0.5 if the halves are equal and there is no top, 1 if nothing can be shared.
+    /// Of the numbers that a solve goes through, those of the busier of two threads: 0.5 if the
+    /// halves are equal, 1 if nothing can be shared.
     double critical_share() const;
 
  private:
@@ -102,9 +105,18 @@ class SupernodalCholesky {
     size_t numbers(const std::vector<int>& panels) const;
     void take(size_t part, const Points& b, Real* work) const;
     void give(size_t part, const Real* work, Points& x) const;
-    void solve_top(Real* work) const;
+    void invert_top();
+    void solve_top(size_t half, Real* work) const;
+    void take_top(size_t half, Real* work) const;
+    size_t strips() const { return (m_top_rows.size() + strip - 1) / strip; }
+    size_t product_begin() const { return static_cast<size_t>(m_size) + m_top_rows.size(); }
+    size_t gathered_begin(size_t half) const {
+        return product_begin() + strip * strips() + half * m_top_rows.size();
+    }
     void eliminate_panels(const std::vector<int>& panels, Real* work) const;
     void substitute_back_panels(const std::vector<int>& panels, Real* work) const;
+
+    static constexpr size_t strip = 8;  ///< rows of the top's inverse that are multiplied together
 
     Eigen::Index m_size = 0;  ///< n
     std::vector<SupernodalPanel> m_panels;
@@ -112,7 +124,8 @@ class SupernodalCholesky {
     std::vector<Real> m_values;
     std::array<std::vector<int>, 2> m_halves;  ///< panels, ascending: no row of one is in the other
     std::vector<int> m_top;                    ///< panels, ascending: ancestors of the halves
-    std::vector<int> m_top_rows;  ///< of the top's columns; row k has its copy at m_size + k
+    std::vector<int> m_top_rows;      ///< of the top's columns; row k has its copy at m_size + k
+    std::vector<Real> m_top_inverse;  ///< strips x |top rows| x 8, the last strip filled with 0
     std::vector<unsigned char> m_part_of;        ///< n
     std::array<std::vector<Rows>, 3> m_rows_of;  ///< each part
 };

@@ -217,8 +217,11 @@ TEST_P(DeflatedCgOfFabrics, FindsTheSameBitsWithAnyNumberOfThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fabrics, DeflatedCgOfFabrics,
-                         ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton(), stiff_cotton()),
-                         [](const auto& fabric) { return "Fabric" + std::to_string(fabric.index); });
+                         ::testing::Values(Fabric::soft_cotton(), Fabric::real_cotton(),
+                                           stiff_cotton()),
+                         [](const auto& fabric) {
+                             return "Fabric" + std::to_string(fabric.index);
+                         });
 
 TEST(ContactShares, OfPartsAddUpToTheBlocks) {
     Layers scene(9, Fabric::real_cotton(), 5);
