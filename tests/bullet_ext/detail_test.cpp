@@ -204,14 +204,14 @@ TEST_F(SwingingSheet, AProxyTakesOverInMidRun) {
     };
     solver.attach(cloth, fine, on_proxy);
     EXPECT_LT(largest_change(10), 4.0 * usual + 2e-3);
-    EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton~49");
+    EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton-3s120~49");
     solver.setDetail(cloth, btGnnDetail::reduced());
     world.step(h);
     EXPECT_LE(solver.reportOf(cloth)->iterations, 3);
     solver.setDetail(cloth, btGnnDetail::full());
     solver.attach(cloth, fine);
     EXPECT_LT(largest_change(10), 4.0 * usual + 2e-3);
-    EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton");
+    EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton-3s120");
     EXPECT_EQ(solver.status().failedSteps, 0);
 }
 

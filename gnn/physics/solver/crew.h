@@ -1,7 +1,5 @@
 #pragma once
 
-#include <omp.h>
-
 #include <cstddef>
 
 namespace cloth {
@@ -21,9 +19,7 @@ class Crew {
     static constexpr size_t parts = 3;
 
     /// Of the parallel region around it.
-    Crew()
-        : m_first(static_cast<size_t>(omp_get_thread_num())),
-          m_count(static_cast<size_t>(omp_get_num_threads())) {}
+    Crew();
 
     bool leads() const { return m_first == 0; }
     template <class Work>
@@ -35,9 +31,7 @@ class Crew {
         for_halves(work);
         if (leads()) work(top);
     }
-    static void wait() {
-#pragma omp barrier
-    }
+    static void wait();
 
  private:
     size_t m_first, m_count;

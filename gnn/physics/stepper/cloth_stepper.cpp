@@ -183,7 +183,8 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
     if (is_watched()) m_start = state;
-    const int small_steps = m_solver->small_steps(dt, state);
+    const int wanted = m_solver->small_steps(dt, state);
+    const int small_steps = affordable_small_steps(wanted);
     StepReport report = small_steps > 1   ? take_small_steps(small_steps, boundary, dt, state)
                         : is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                           : m_solver->part(boundary, dt, m_guard.iterations, state);
@@ -192,6 +193,8 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
         report.out_of_time = true;
         m_search_ms *= 0.5;  // the next ones may be cheaper: the first of all is dear
     }
+    report.out_of_time = report.out_of_time || small_steps < wanted;
+    m_iteration_ms = report.times.solve / std::max(1, report.iterations);
     m_part_ms = least_ms(report, m_guard.iterations);
     if (is_watched() && m_part_ms + m_search_ms <= m_deadline.left()) {
         m_solver->set_deadline(m_deadline.earlier(m_search_ms));
@@ -205,7 +208,7 @@ StepReport ClothStepper::take_small_steps(int count, const Boundary& boundary, d
     m_state.v = state.v;
     add_lag(count, state);
     const auto from = is_made_for(dt) ? StepSolver::From::start : StepSolver::From::guess;
-    const StepReport report = m_solver->in_small_steps(boundary, dt, from, state);
+    const StepReport report = m_solver->in_small_steps(count, boundary, dt, from, state);
     if (report.finite)
         keep_lag(count, m_solver->end_velocity(), state);
     else
@@ -342,6 +345,14 @@ int ClothStepper::affordable(int substeps, int least) const {
     while (substeps > least && substeps * m_part_ms > left)
         substeps = std::max(least, substeps / 2);
     return substeps;
+}
+
+/// Halved until each has time for two iterations: with fewer it is better to take fewer.
+int ClothStepper::affordable_small_steps(int count) const {
+    constexpr int worthwhile = 2;
+    while (count > 1 && count * worthwhile * m_iteration_ms > m_deadline.left())
+        count = (count + 1) / 2;
+    return count;
 }
 
 /// Powers of two, so that few matrices are factorised.

@@ -114,7 +114,8 @@ class ClothStepper : public Stepper {
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     /// Before the limit this gives way, in this order: iterations beyond the settings' least, which
     /// in steps of much motion have half of the time only; parts of a step, each of which needs
-    /// time for five iterations; the search for what was passed through; the other iterations. The
+    /// time for five iterations; the search for what was passed through; small steps, which are
+    /// halved in number where there is no time for two iterations each; the other iterations. The
     /// start, one iteration for each part and contact projection take the time that they take.
     /// Newton's method takes no notice (false).
     bool set_max_ms(double ms) override;
@@ -151,6 +152,7 @@ class ClothStepper : public Stepper {
     void add_lag(int parts, ClothState& state) const;
     void keep_lag(int parts, const Points& end_velocity, const ClothState& state);
     int affordable(int substeps, int least) const;
+    int affordable_small_steps(int count) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
@@ -185,9 +187,10 @@ class ClothStepper : public Stepper {
     /// a step may be taken again from where it began.
     Lag m_lag, m_lag_before, m_next_lag;
     double m_max_ms = std::numeric_limits<double>::infinity();
-    Deadline m_deadline;       ///< of this step
-    double m_part_ms = 0.0;    ///< what a part takes at least, as the last ones did
-    double m_search_ms = 0.0;  ///< what the last search took
+    Deadline m_deadline;          ///< of this step
+    double m_part_ms = 0.0;       ///< what a part takes at least, as the last ones did
+    double m_iteration_ms = 0.0;  ///< of the last whole step, without its searches
+    double m_search_ms = 0.0;     ///< what the last search took
 };
 
 }  // namespace cloth

@@ -100,10 +100,10 @@ StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& st
     return solve(boundary, dt, m_start.get(), limits, 1, state);
 }
 
-StepReport StepSolver::in_small_steps(const Boundary& boundary, double dt, From from,
+StepReport StepSolver::in_small_steps(int count, const Boundary& boundary, double dt, From from,
                                       ClothState& state) {
     return solve(boundary, dt, from == From::start ? m_start.get() : nullptr,
-                 m_settings.quasi_newton, small_steps(dt), state);
+                 m_settings.quasi_newton, count, state);
 }
 
 /// Where few iterations are allowed they are not spread so thinly that the cloth gets softer.

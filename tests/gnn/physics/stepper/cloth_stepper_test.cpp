@@ -651,7 +651,7 @@ TEST_F(Parts, AFailureInTheMiddleLeavesTheStateAsItWas) {
 TEST_F(Parts, AreNamed) {
     EXPECT_EQ(cut(m_garment, 4, 3).name(), "quasi-newton-3x4");
     EXPECT_EQ(cut(m_garment, 1, 3).name(), "quasi-newton-3");
-    EXPECT_EQ(ClothStepper(m_garment).name(), "quasi-newton");
+    EXPECT_EQ(ClothStepper(m_garment).name(), "quasi-newton-3s120");
     EXPECT_EQ(ClothStepper(m_garment, ClothStepperSettings::reference()).name(), "reference");
 }
 

@@ -173,7 +173,7 @@ TEST_F(SmallSteps, EnergyNeverRises) {
     }
 }
 
-TEST_F(SmallSteps, WithoutTimeEachTakesOneIteration) {
+TEST_F(SmallSteps, WithoutTimeTakeOneIterationAndThenAreFewer) {
     ClothStepper stepper(m_hung, small(4, 3));
     ASSERT_TRUE(stepper.set_max_ms(1e-6));
     ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
@@ -183,6 +183,9 @@ TEST_F(SmallSteps, WithoutTimeEachTakesOneIteration) {
     EXPECT_TRUE(report.out_of_time);
     EXPECT_EQ(report.iterations, 4);
     EXPECT_EQ(report.substeps, 1);
+    const StepReport next = stepper.step(boundary, dt, state);
+    EXPECT_TRUE(next.out_of_time);
+    EXPECT_EQ(next.iterations, 1) << "now that it knows what an iteration takes";
 }
 
 TEST_F(SmallSteps, ShareTheIterationsThatAStepMayTake) {
