@@ -227,7 +227,7 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton, quasi-newton-K, quasi-newton-KsS, quasi-newton-KxS, xpbd-N, skinning, "
+        "quasi-newton, quasi-newton-K, quasi-newton-KsR, quasi-newton-KxS, xpbd-N, skinning, "
         "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");

@@ -88,10 +88,10 @@ std::vector<DataSet> data_sets() {
          {}},
         {"which_solver",
          figures + "which_solver.json",
-         "build/release/demos/speed_error --scene all --frames 30 --relative-to xpbd-40 --solvers "
-         "xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-2s60,quasi-newton-"
-         "2s120,"
-         "quasi-newton-3s120,quasi-newton-5s120,quasi-newton-3s120-bdf2,small,small+3 --out OUT",
+         "build/release/demos/speed_error --scene all --limbs --frames 30 --relative-to xpbd-40"
+         " --solvers xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-1s120,"
+         "quasi-newton-2s60,quasi-newton-2s120,quasi-newton-3s120,quasi-newton-5s120,"
+         "quasi-newton-2s240,quasi-newton-3s120-bdf2,small,small+2s120,small+3 --out OUT",
          "speed_error.json",
          {},
          {}},
@@ -159,7 +159,7 @@ std::vector<DataSet> data_sets() {
         {"bullet_scenes",
          figures + "bullet_scenes.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene small"
-         " --solvers bullet,quasi-newton-3,small --no-videos --out OUT",
+         " --solvers bullet,quasi-newton-3s120,small --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},
@@ -167,7 +167,7 @@ std::vector<DataSet> data_sets() {
          figures + "bullet_demos.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene"
          " Cloth,ClothAttach,CapsuleCollision,Collide3,Cutting1,SimpleCloth,Aero,Aero2"
-         " --solvers bullet,quasi-newton-3,small --reference none --no-videos --out OUT",
+         " --solvers bullet,quasi-newton-3s120,small --reference none --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},

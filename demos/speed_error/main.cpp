@@ -79,8 +79,10 @@ void speed_error(const SpeedErrorOptions& options) {
     Progress line;
     for (const std::string& scene : options.scenes)
         for (const std::string& fabric : options.fabrics) {
+            SceneSettings settings{scene, fabric, options.frames, options.vertices, options.rate};
+            settings.limbs = options.limbs;
             const SceneReport report = measure_scene(
-                {scene, fabric, options.frames, options.vertices, options.rate}, contest,
+                settings, contest,
                 [&](int done, int all, const std::string& what) { line.update(done, all, what); });
             head["scenes"].push_back(report.description);
             rows.insert(rows.end(), report.rows.begin(), report.rows.end());

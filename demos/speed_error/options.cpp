@@ -63,6 +63,10 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
                "soft (cotton of 33 N/m; default), real (as measured,\n"
                "5 kN/m), or both");
     add_rate(app, options.rate);
+    app.add_flag("--limbs", options.limbs,
+                 "limbs of the body that pass through others are told apart, as\n"
+                 "in a game. Energies are then of other surfaces: look at times\n"
+                 "and distances");
     add_whole_number(app, "--frames", options.frames, 0, 100000,
                      "frames (default 30; 0: as long as the scene lasts)");
     add_whole_number(app, "--vertices", options.vertices, 100, 20000,
@@ -70,7 +74,7 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
     add_list(app, "--solvers", options.solvers,
              "bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
              "sub-steps), quasi-newton-K, newton-K (K iterations),\n"
-             "quasi-newton-KsS (S small steps of K iterations),\n"
+             "quasi-newton-KsR (R small steps a second),\n"
              "quasi-newton, NAME (a network; both as shipped), reference,\n"
              "NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
              "instead of the engine), bf16-NAME+K (products in bfloat16),\n"

@@ -9,6 +9,7 @@ struct SpeedErrorOptions {
     std::vector<std::string> scenes = {"tshirt"};  ///< of scene_names(), or garments
     std::vector<std::string> fabrics = {"soft"};   ///< soft, real
     int rate = 30;                                 ///< frames and steps per second
+    bool limbs = false;  ///< of the body: cloth passes through those that pass through others
     int frames = 30;
     int vertices = 4000;               ///< of the sheets
     int threads = 0;                   ///< 0: all cores that this process may use

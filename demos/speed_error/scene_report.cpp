@@ -28,6 +28,7 @@ ordered_json describe(const SceneSettings& settings, const ComparisonScene& scen
     json["obstacle_faces"] = obstacle_faces;
     json["frames"] = scene.frames();
     json["time_step"] = scene.frame_time();
+    json["limbs"] = scene.has_limbs();
     return json;
 }
 
@@ -59,7 +60,8 @@ SceneReport measure_scene(const SceneSettings& scene_settings, const ContestSett
                           const ProgressFunction& progress) {
     const std::string name = scene_settings.name + "_" + scene_settings.fabric + "_" +
                              std::to_string(scene_settings.rate) + "Hz_" + scene_settings.body +
-                             "_" + std::filesystem::path(scene_settings.motion).stem().string();
+                             "_" + std::filesystem::path(scene_settings.motion).stem().string() +
+                             (scene_settings.limbs ? "_limbs" : "");
     const auto tell = [&](int done, int all, const std::string& what) {
         progress(done, all, scene_settings.name + ", " + scene_settings.fabric + ": " + what);
     };

@@ -109,6 +109,7 @@ std::unique_ptr<ComparisonScene> make_scene(const SceneSettings& settings) {
     body.rate = settings.rate;
     body.frames = settings.frames;
     body.reference_frames = settings.frames;
+    body.limbs = settings.limbs;
     return std::make_unique<BodyScene>(body);
 }
 

@@ -16,6 +16,7 @@ struct SceneSettings {
     int rate = 30;                 ///< frames per second
     std::string body = "default";  ///< that wears the garment, see body_named()
     std::string motion = "01_01";  ///< of the body
+    bool limbs = false;            ///< of the body are told apart, see LimbOverlap
 };
 
 /// Where the garment of the scene on a body is not another one.

@@ -32,6 +32,8 @@ TEST(SpeedErrorOptions, DefaultsAreOneSceneAndFabric) {
     EXPECT_EQ(options.scenes, std::vector<std::string>{"tshirt"});
     EXPECT_EQ(options.fabrics, std::vector<std::string>{"soft"});
     EXPECT_TRUE(options.solvers.empty());
+    EXPECT_FALSE(options.limbs);
+    EXPECT_TRUE(parse_speed_error_options({"--limbs"}).limbs);
 }
 
 TEST(SpeedErrorOptions, AllAndBothAreEveryChoice) {

@@ -39,29 +39,37 @@ Obstacle incline(double angle) {
     return plane;
 }
 
+/// How far (m) a sheet's middle slides down in two seconds.
+double slide(const std::function<std::unique_ptr<Stepper>(const Garment&)>& make, double angle) {
+    TriMesh mesh = make_sheet(0.2, 0.2, 120);
+    const Eigen::AngleAxisd tilt(-angle, Vec3::UnitZ());
+    for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
+        const Vec3 flat = mesh.vertices.row(i);
+        mesh.vertices.row(i) = (tilt * (flat + 3.99e-3 * Vec3::UnitY())).transpose();
+    }
+    const Garment garment("sheet", mesh, Fabric::soft_cotton(), {});
+    const auto stepper = make(garment);
+    ClothState state = ClothState::at_rest(garment);
+    Boundary boundary;
+    boundary.pin_targets.resize(0, 3);
+    boundary.obstacles = {incline(angle)};
+    for (int frame = 0; frame < 60; ++frame) {
+        const StepReport report = stepper->step(boundary, dt, state);
+        EXPECT_TRUE(report.finite) << "frame " << frame;
+        EXPECT_LT(report.max_penetration, 1e-3) << "frame " << frame;
+    }
+    return ((state.x - mesh.vertices) * (tilt * Vec3::UnitX())).mean();
+}
+
+/// Of backward Euler in steps of h, which slides one step's worth ahead.
+double way_by_coulomb(double angle, double h) {
+    const double acceleration = 9.81 * (std::sin(angle) - friction * std::cos(angle));
+    return 0.5 * acceleration * 2.0 * (2.0 + h);
+}
+
 class Incline : public ::testing::TestWithParam<Case> {
  protected:
-    /// How far (m) the sheet's middle has slid down in two seconds.
-    static double slide(double angle) {
-        TriMesh mesh = make_sheet(0.2, 0.2, 120);
-        const Eigen::AngleAxisd tilt(-angle, Vec3::UnitZ());
-        for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i) {
-            const Vec3 flat = mesh.vertices.row(i);
-            mesh.vertices.row(i) = (tilt * (flat + 3.99e-3 * Vec3::UnitY())).transpose();
-        }
-        const Garment garment("sheet", mesh, Fabric::soft_cotton(), {});
-        const auto stepper = GetParam().make(garment);
-        ClothState state = ClothState::at_rest(garment);
-        Boundary boundary;
-        boundary.pin_targets.resize(0, 3);
-        boundary.obstacles = {incline(angle)};
-        for (int frame = 0; frame < 60; ++frame) {
-            const StepReport report = stepper->step(boundary, dt, state);
-            EXPECT_TRUE(report.finite) << "frame " << frame;
-            EXPECT_LT(report.max_penetration, 1e-3) << "frame " << frame;
-        }
-        return ((state.x - mesh.vertices) * (tilt * Vec3::UnitX())).mean();
-    }
+    static double slide(double angle) { return incline_test::slide(GetParam().make, angle); }
 };
 
 TEST_P(Incline, HoldsBelowTheFrictionAngle) {
@@ -71,10 +79,23 @@ TEST_P(Incline, HoldsBelowTheFrictionAngle) {
 
 TEST_P(Incline, SlidesAboveItAsCoulombSays) {
     for (const double angle : {32 * degree, 45 * degree}) {
-        const double acceleration = 9.81 * (std::sin(angle) - friction * std::cos(angle));
-        // backward Euler slides one step's worth ahead
-        const double expected = 0.5 * acceleration * 2.0 * (2.0 + dt);
+        const double expected = way_by_coulomb(angle, dt);
         EXPECT_NEAR(slide(angle), expected, 0.15 * expected);
+    }
+}
+
+TEST(InclineInSmallSteps, SlidesWithinTwoHundredthsWithFewIterations) {
+    for (const int iterations : {1, 3, 10}) {
+        SCOPED_TRACE(iterations);
+        const auto make = [=](const Garment& garment) {
+            ClothStepperSettings settings;
+            settings.step = StepSettings::in_small_steps(120.0, iterations);
+            return std::make_unique<ClothStepper>(garment, settings);
+        };
+        for (const double angle : {32 * degree, 45 * degree}) {
+            const double expected = way_by_coulomb(angle, dt / 4.0);
+            EXPECT_NEAR(slide(make, angle), expected, 0.02 * expected);
+        }
     }
 }
 

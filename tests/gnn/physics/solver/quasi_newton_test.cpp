@@ -387,9 +387,10 @@ TEST(ContactHessian, BlocksOfVerticesAreTheirContactAndFriction) {
         const Eigen::Matrix3d across =
             Eigen::Matrix3d::Identity() - slider.normal * slider.normal.transpose();
         const Vec3 slip = across * (pressed.row(slider.vertex).transpose() - slider.stick);
-        const double stiffness = slider.force / std::hypot(friction.slip(), slip.norm());
+        const double smooth = std::hypot(friction.slip(), slip.norm());
         const Vec3 d = direction.row(slider.vertex);
-        expected.row(slider.vertex) += stiffness * (across * d).transpose();
+        const Vec3 yielding = slip.dot(d) / (smooth * smooth) * slip;
+        expected.row(slider.vertex) += slider.force / smooth * (across * d - yielding).transpose();
     }
     ASSERT_GT(deep, 3);
     ASSERT_GT(friction.sliders().size(), 3u);

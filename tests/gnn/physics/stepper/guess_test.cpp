@@ -58,6 +58,39 @@ TEST(StartingGuess, PutsPinsOnTheirTargetsInTheOrderOfThePins) {
     EXPECT_EQ(x.row(4), Eigen::RowVector3d(4, 5, 6));
 }
 
+TEST(RestingGuess, KeepsWhatTouchesAsDeepAsItWas) {
+    SolverScene scene = swinging_sheet(4);
+    scene.state.x.col(1).setConstant(0.01);
+    scene.state.x(5, 1) = 3.95e-3;  // within the contact distance of the plane
+    scene.state.x(6, 1) = 1e-3;     // deep
+    scene.state.v.col(1).setConstant(-1.0);
+    scene.state.v(7, 1) = 2.0;
+    scene.boundary.pin_targets.setConstant(0.3);
+    const SurfaceContacts contacts =
+        plane_contacts(scene.state.x, Vec3::Zero(), Vec3::UnitY(), Vec3(0, 5e-3, 0));
+    Points x, free;
+    resting_guess(scene.garment, scene.state, scene.boundary, contacts, dt, 4e-3, x);
+    linear_extrapolation(scene.state, dt, free);
+    EXPECT_NEAR(x(5, 1), 5e-3 + 3.95e-3, 1e-15);
+    EXPECT_NEAR(x(6, 1), 5e-3 + 3.7e-3, 1e-15) << "0.3 mm deep at most";
+    EXPECT_EQ(x(7, 1), free(7, 1)) << "it leaves the plane";
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const bool pinned = scene.garment.is_pinned()[static_cast<size_t>(i)] != 0;
+        if (pinned)
+            EXPECT_EQ(x(i, 1), 0.3);
+        else if (i < 5 || i > 7)
+            EXPECT_NEAR(x(i, 1), 9e-3, 1e-15) << "vertex " << i << " only reaches the plane now";
+    }
+}
+
+TEST(RestingGuess, AwayFromObstaclesIsTheStartingGuess) {
+    const SolverScene scene = swinging_sheet(5);
+    Points x, other;
+    resting_guess(scene.garment, scene.state, scene.boundary, {}, dt, 4e-3, x);
+    starting_guess(scene.garment, scene.state, scene.boundary, {}, dt, 4e-3, other);
+    EXPECT_EQ(x, other);
+}
+
 TEST(IsValidStep, AcceptsAnOrdinaryStep) {
     const SolverScene scene = sheet_on_sphere(4);
     EXPECT_TRUE(is_valid_step(scene.garment, scene.state, scene.boundary, dt));
