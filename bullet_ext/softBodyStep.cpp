@@ -400,7 +400,9 @@ void SoftBodyStep::carryClothStep() {
     if (!m_root) return;
     const Pose motion =
         m_root->carry({m_cloth_step.begin / m_time_scale, m_cloth_step.length / m_time_scale});
-    if (motion.matrix() != Pose::Identity().matrix()) carryStart(motion, m_boundary, m_carried);
+    if (motion.matrix() == Pose::Identity().matrix()) return;
+    carryStart(motion, m_boundary, m_carried);
+    m_stepper->moved(m_cloth_step.from.x, m_carried.x, motion.linear());
 }
 
 void SoftBodyStep::solve() {

@@ -97,6 +97,14 @@ class Stepper {
     /// @param state     positions (|V| x 3, m) and velocities (|V| x 3, m/s), advanced in place
     virtual StepReport step(const Boundary& boundary, double dt, ClothState& state) = 0;
 
+    /// A state that step() returned was moved as a rigid body, positions and velocities: the next
+    /// step goes on with what the stepper remembers of it, turned alike.
+    /// @param before, after  |V| x 3 (m): its positions
+    /// @param turn           the motion's rotation
+    virtual void moved(const Points& before, const Points& after, const Eigen::Matrix3d& turn) {
+        (void)before, (void)after, (void)turn;
+    }
+
     /// Whether step() may run while steps of other independent steppers do, in other threads:
     /// nothing that it changes is theirs too.
     virtual bool is_independent() const { return false; }

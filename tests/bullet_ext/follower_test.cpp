@@ -64,7 +64,7 @@ class FollowedSheet : public testing::Test {
 TEST_F(FollowedSheet, ItIsWhereTheNodesAreAfterEachStep) {
     hang(1 + 2);
     EXPECT_LT(distance_to_embedding(), 1e-6) << "before the first step, too";
-    for (int k = 0; k < 60; ++k) {
+    for (int k = 0; k < 120; ++k) {
         world.step(1.0 / 60.0);
         ASSERT_LT(distance_to_embedding(), 1e-6) << k;
     }

@@ -19,10 +19,20 @@ constexpr double exact = 1e-6;  // m
 StepperCase guarded(Integrator integrator, const std::string& name) {
     const auto make = [integrator](const Garment& garment) {
         ClothSettings settings;
+        settings.step = StepSettings::whole();
         settings.step.potential.integrator = integrator;
         return make_cloth(garment, settings);
     };
     return {name, make, 1e-6, {}};
+}
+
+StepperCase small_steps() {
+    const auto make = [](const Garment& garment) {
+        ClothSettings settings;
+        settings.step = StepSettings::in_small_steps(120.0, 20);
+        return make_cloth(garment, settings);
+    };
+    return {"SmallSteps", make, 1e-6, {}};
 }
 
 StepperCase learned() {
@@ -56,6 +66,7 @@ StepperCase with_self_contact(const StepperCase& plain) {
     layered.name += "Layered";
     layered.make = [](const Garment& garment) {
         ClothSettings settings;
+        settings.step = StepSettings::whole();
         settings.step.potential.self_contact.thickness = 4e-3;
         return make_cloth(garment, settings);
     };
@@ -331,7 +342,7 @@ TEST_P(SkinGoalsContract, EqualBitsForAnyNumberOfThreads) {
 INSTANTIATE_TEST_SUITE_P(
     All, SkinGoalsContract,
     ::testing::Values(guarded(Integrator::backward_euler, "QuasiNewton"),
-                      guarded(Integrator::bdf2, "Bdf2"), learned(), newton(), xpbd(),
+                      guarded(Integrator::bdf2, "Bdf2"), small_steps(), learned(), newton(), xpbd(),
                       with_self_contact(guarded(Integrator::backward_euler, "QuasiNewton"))),
     case_name);
 
@@ -448,7 +459,9 @@ TEST(SkinGoals, ADrivenSheetSwingsAsTheClosedFormSays) {
             ClothState implicit = ClothState::at_rest(garment);
             implicit.x.col(1).array() += 0.05;
             ClothState relaxed = implicit;
-            const std::unique_ptr<Stepper> stepper = make_cloth(garment);
+            ClothSettings whole;
+            whole.step = StepSettings::whole();
+            const std::unique_ptr<Stepper> stepper = make_cloth(garment, whole);
             XpbdSettings settings;
             settings.substeps = 40;
             XpbdStepper xpbd_stepper(garment, settings);

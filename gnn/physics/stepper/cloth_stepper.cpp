@@ -271,6 +271,14 @@ void ClothStepper::add_lag(int parts, ClothState& state) const {
     }
 }
 
+void ClothStepper::moved(const Points& before, const Points& after, const Eigen::Matrix3d& turn) {
+    for (Lag* lag : {&m_lag, &m_lag_before}) {
+        if (lag->parts < 2 || !same_points(lag->x, before)) continue;
+        lag->x = after;
+        lag->v *= turn.transpose();
+    }
+}
+
 void ClothStepper::keep_lag(int parts, const Points& end_velocity, const ClothState& state) {
     m_next_lag.parts = parts;
     m_next_lag.x = state.x;

@@ -112,6 +112,7 @@ class ClothStepper : public Stepper {
     /// Factorises for steps of this length and for their parts.
     void prepare(double dt) override;
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    void moved(const Points& before, const Points& after, const Eigen::Matrix3d& turn) override;
     /// Before the limit this gives way, in this order: iterations beyond the settings' least, which
     /// in steps of much motion have half of the time only; parts of a step, each of which needs
     /// time for five iterations; the search for what was passed through; small steps, which are

@@ -95,8 +95,12 @@ IterationLimits StepSolver::adjusted(IterationLimits limits) const {
 
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
-    limits.iterations *= small_steps(dt);
-    limits.least_iterations *= small_steps(dt);
+    const int count = small_steps(dt);
+    if (count > 1) {
+        const IterationLimits one = IterationLimits::controlled();
+        limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
+                                             std::max(one.iterations, count * limits.iterations));
+    }
     return solve(boundary, dt, m_start.get(), limits, 1, state);
 }
 
@@ -182,9 +186,13 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
     const Deadline deadline = m_deadline, for_more = m_deadline_for_more;
     m_boundary_part.begin(*m_garment, m_last, boundary, parts, BoundaryPart::Surfaces::left_out);
     m_contact_part.begin(m_contacts, parts);
+    m_part_ends.resize(static_cast<size_t>(parts) - 1);
     bool finite = true;
     for (int k = 0; k < parts && finite; ++k) {
-        if (k > 0) accept_part();
+        if (k > 0) {
+            m_part_ends[static_cast<size_t>(k) - 1] = m_x;
+            accept_part();
+        }
         const Boundary& part = m_boundary_part.take(k);
         const SurfaceContacts& contacts = m_contact_part.take(k, m_last.x);
         share(deadline, parts - k, m_deadline);
@@ -266,6 +274,17 @@ StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& s
         report);
     m_potential.friction().remember(state.x, state.stick);
     return report;
+}
+
+void StepSolver::internal_forces(const Points& x, Points& forces) const {
+    m_potential.internal_forces(x, forces);
+    if (m_parts == 1 || !same_points(x, m_x)) return;
+    Points at_end;
+    for (const Points& end : m_part_ends) {
+        m_potential.internal_forces(end, at_end);
+        forces += at_end;
+    }
+    forces /= static_cast<double>(m_parts);
 }
 
 void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEnd end) {

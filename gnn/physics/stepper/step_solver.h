@@ -4,6 +4,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "collision/ccd/tunnelling.h"
 #include "collision/proximity/ridge_contacts.h"
@@ -37,8 +38,9 @@ struct StepSettings {
     /// iterations of `quasi_newton`. All have the contacts of the step, which move along, and one
     /// contact projection follows the last. Small steps damp less, are nearer to the equations of
     /// motion, and need fewer iterations; above this rate no step is cut. Cloth that hardly moves
-    /// takes one step with the iterations of all instead, so that it comes to rest, and so does a
-    /// step that has to reach a residual. What a start predicts is shared out between them.
+    /// takes one step instead, with the iterations of all, ten at least, and more for as long as
+    /// they gain, so that it comes to rest where it should, and so does a step that has to reach a
+    /// residual. What a start predicts is shared out between them.
     double small_step_rate = 120.0;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.
@@ -144,10 +146,10 @@ class StepSolver {
                                const TunnellingDetector* through, const IterationLimits& limits,
                                ClothState& state);
 
-    /// See Stepper::internal_forces().
-    void internal_forces(const Points& x, Points& forces) const {
-        m_potential.internal_forces(x, forces);
-    }
+    /// See Stepper::internal_forces(). Where x is the end of the last step, and that was taken in
+    /// small steps, the mean of those at their ends: what the step's change of momentum has of
+    /// them.
+    void internal_forces(const Points& x, Points& forces) const;
 
     double internal_energy(const Points& x) const { return m_potential.internal_energy(x); }
 
@@ -213,9 +215,10 @@ class StepSolver {
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
     BoundaryPart m_boundary_part;
     ContactPart m_contact_part;
-    ClothState m_last;       ///< from which the last part began
-    double m_last_dt = 0.0;  ///< its length (s)
-    int m_parts = 1;         ///< of the last step
+    ClothState m_last;                ///< from which the last part began
+    double m_last_dt = 0.0;           ///< its length (s)
+    int m_parts = 1;                  ///< of the last step
+    std::vector<Points> m_part_ends;  ///< (parts - 1) x |V| x 3 (m): of all but the last
 };
 
 }  // namespace cloth

@@ -174,7 +174,7 @@ class DeflatedCgOfFabrics : public ::testing::TestWithParam<Fabric> {
         const double mu = GetParam().mu;
         if (mu < 100.0) return 5e-6;
         if (iterations > 4) return 5e-3;
-        return mu < 1e5 ? 2e-4 : 1e-11;
+        return mu < 1e5 ? 5e-4 : 1e-10;
     }
 };
 

@@ -108,14 +108,14 @@ TEST_F(SmallSteps, OnABallAreNearToParts) {
     EXPECT_LT(off, 5e-3) << "m, after half a second on a ball that rises";
 }
 
-TEST_F(SmallSteps, ClothAtRestTakesOneStepOfAllIterations) {
+TEST_F(SmallSteps, ClothAtRestTakesOneStepOfAsManyIterationsAsGain) {
     ClothState a = ClothState::at_rest(m_hung), b = a;
     const Boundary boundary = boundary_of(m_hung, a);
     ClothStepperSettings one = ClothStepperSettings::plain();
-    one.step.quasi_newton = StepSettings::in_small_steps().quasi_newton;
-    one.step.quasi_newton.iterations = 12;
+    one.step.quasi_newton = IterationLimits::controlled(12);
+    one.step.quasi_newton.contact_cg_iterations = 5;
     const StepReport report = ClothStepper(m_hung, small(4, 3)).step(boundary, dt, a);
-    EXPECT_EQ(report.iterations, 12);
+    EXPECT_GE(report.iterations, 12);
     ClothStepper(m_hung, one).step(boundary, dt, b);
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(a.v, b.v);
@@ -132,6 +132,42 @@ TEST_F(SmallSteps, AStepMayBeTakenAgainFromWhereItBegan) {
     EXPECT_EQ(first.x, again.x) << "with the velocity at the end of the step before, too";
     EXPECT_EQ(first.v, again.v);
     EXPECT_EQ(first.x, third.x);
+}
+
+TEST_F(SmallSteps, GoOnWhereTheStateWasMovedAsARigidBody) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3::UnitY()).toRotationMatrix();
+    const Eigen::RowVector3d way(0.3, 0.0, -0.2);
+    ClothStepper here(m_free, small(4, 3)), there(m_free, small(4, 3));
+    ClothState a = moving(m_free, Vec3(0.2, -0.5, 0.1)), b = a;
+    const Boundary boundary = boundary_of(m_free, a);
+    for (ClothStepper* stepper : {&here, &there})
+        stepper->step(boundary, dt, stepper == &here ? a : b);
+    const Points before = b.x;
+    b.x = (b.x * turn.transpose()).rowwise() + way;
+    b.v *= turn.transpose();
+    there.moved(before, b.x, turn);
+    here.step(boundary, dt, a);
+    there.step(boundary, dt, b);
+    EXPECT_LT((((a.x * turn.transpose()).rowwise() + way) - b.x).cwiseAbs().maxCoeff(), 1e-6);
+    const Points fallen = a.x - m_free.rest().vertices;
+    EXPECT_NEAR(fallen(7, 1), -0.5 * 2 * dt - 9.81 * dt * dt / 16 * 8 * 9 / 2, 1e-5);
+}
+
+TEST_F(SmallSteps, InternalForcesAreTheMeanOverThem) {
+    ClothStepper stepper(m_free, small(4, 60));
+    ClothState state = moving(m_free, Vec3(0, -0.5, 0));
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i) state.x(i, 0) *= 1.05;  // stretched
+    const Boundary boundary = boundary_of(m_free, state);
+    ASSERT_TRUE(stepper.step(boundary, dt, state).finite);  // from rest to the mean velocity
+    Points v = state.v, forces;
+    ASSERT_TRUE(stepper.step(boundary, dt, state).finite);
+    ASSERT_TRUE(stepper.internal_forces(state.x, forces));
+    EXPECT_LT(forces.colwise().sum().norm(), 1e-9);
+    Points at_end;
+    Points elsewhere = state.x;
+    elsewhere(0, 0) += 1e-12;
+    ASSERT_TRUE(stepper.internal_forces(elsewhere, at_end));
+    EXPECT_GT((forces - at_end).norm(), 0.1 * at_end.norm()) << "it swings back within the step";
 }
 
 TEST_F(SmallSteps, AStepThatFailsLeavesTheState) {
@@ -173,7 +209,7 @@ TEST_F(SmallSteps, EnergyNeverRises) {
     }
 }
 
-TEST_F(SmallSteps, WithoutTimeTakeOneIterationAndThenAreFewer) {
+TEST_F(SmallSteps, WithoutTimeAreOneStepOfOneIteration) {
     ClothStepper stepper(m_hung, small(4, 3));
     ASSERT_TRUE(stepper.set_max_ms(1e-6));
     ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
@@ -181,11 +217,8 @@ TEST_F(SmallSteps, WithoutTimeTakeOneIterationAndThenAreFewer) {
     const StepReport report = stepper.step(boundary, dt, state);
     EXPECT_TRUE(report.finite);
     EXPECT_TRUE(report.out_of_time);
-    EXPECT_EQ(report.iterations, 4);
+    EXPECT_EQ(report.iterations, 1);
     EXPECT_EQ(report.substeps, 1);
-    const StepReport next = stepper.step(boundary, dt, state);
-    EXPECT_TRUE(next.out_of_time);
-    EXPECT_EQ(next.iterations, 1) << "now that it knows what an iteration takes";
 }
 
 TEST_F(SmallSteps, ShareTheIterationsThatAStepMayTake) {
