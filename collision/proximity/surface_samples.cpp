@@ -13,7 +13,7 @@ constexpr double near_enough = 2e-2;  // m: skins further away do not matter
 // A sample that is deep is no farther from the surface than its bound says. It is searched for
 // somewhat farther: what is known of a face's centre saves the search for its edges' midpoints.
 constexpr double beyond_doubt = 5e-3;  // m
-constexpr int enough_samples = 4000;   // to be worth waking threads for
+constexpr int worth_threads = 4000;    // to be worth waking threads for
 
 static std::vector<std::array<int, 2>> faces_at_edges(const Garment& garment) {
     std::map<std::pair<int, int>, int> index;
@@ -135,7 +135,7 @@ void SurfaceSamples::limit_search(int sample, const Boundary& boundary) {
 template <class IsUnsure>
 void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundary, int first,
                                    int last, const IsUnsure& is_unsure) {
-    select_rows(first, last, enough_samples, m_unsure, m_rows, [&](int sample) {
+    select_rows(first, last, worth_threads, m_unsure, m_rows, [&](int sample) {
         const bool unsure = is_unsure(sample);
         if (unsure) limit_search(sample, boundary);
         return unsure;

@@ -43,7 +43,9 @@ StepperFactory network(const std::string& name, const std::string& folder) {
     if (wanted.torch) throw UsageError("solver " + name + ": here networks run in the engine only");
     ClothSettings settings;
     const std::string prefix = wanted.variant + "+";
-    if (const auto small = small_steps_named(prefix + wanted.refine, prefix))
+    const auto small = small_steps_named(prefix + wanted.refine, prefix);
+    settings.small_steps_from_network = small.has_value();
+    if (small)
         settings.step = *small;
     else if (!wanted.as_shipped)
         settings.step = StepSettings::whole(

@@ -170,6 +170,7 @@ std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weig
 std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
     ClothStepperSettings learned;
+    bool small_steps = false;
     std::string plain = name;
     take_integrator(plain);
     const NetworkName network(plain);
@@ -177,6 +178,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
         const std::string prefix = network.variant + "+", whole = prefix + network.refine;
         if (const auto small = small_steps_named(whole, prefix)) {
             learned.step = *small;
+            small_steps = true;
         } else {
             learned.step =
                 StepSettings::whole(IterationLimits::exactly(iterations_of(whole, prefix, 0, 100)));
@@ -187,7 +189,8 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
-    return make_cloth(scene.garment(), make_predictor(network, weights, settings), learned);
+    return make_cloth(scene.garment(), make_predictor(network, weights, settings), learned,
+                      small_steps);
 }
 
 std::unique_ptr<Stepper> make_own_solver(const std::string& name, const ComparisonScene& scene,

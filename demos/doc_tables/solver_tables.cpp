@@ -127,7 +127,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "time is short, and XPBD lacks what you need: limbs, `maxMs`, reactions through anchors"},
         {"quasi-newton",
          "each step should be solved well: whole steps, iterations for as long as they gain"},
-        {"small", "the learned solver: a network, then the small steps of the default"}};
+        {"small", "the learned solver: a network, then the iterations of `quasi-newton`"}};
     MarkdownTable table;
     table.heading = {"solver",
                      "use it when",

@@ -10,11 +10,14 @@ namespace cloth {
 struct ClothSettings : ClothStepperSettings {
     std::shared_ptr<const EngineWeights> weights;  ///< of a trained network; null: physics alone
     EngineSettings engine;                         ///< that runs the network
+    /// Whether steps from a network's prediction are small ones, too, if `step` has them. If not
+    /// they are those of StepSettings::whole(): bodies that touch the cloth lose momentum to small
+    /// steps as long as a network's.
+    bool small_steps_from_network = false;
 };
 
-/// The solver of a garment as it should be used: quasi-Newton iterations with error control from
-/// the network's prediction, or from the projected extrapolation without weights, and steps cut
-/// into parts where one cannot be trusted.
+/// The solver of a garment as it should be used: small steps, or whole ones from the network's
+/// prediction, which are cut into parts where they cannot be trusted.
 ///
 ///     ClothSettings settings;
 ///     settings.weights = std::make_shared<const EngineWeights>(Weights::load(file));  // optional
@@ -26,10 +29,10 @@ struct ClothSettings : ClothStepperSettings {
 std::unique_ptr<ClothStepper> make_cloth(const Garment& garment,
                                          const ClothSettings& settings = {});
 
-/// The same with a network that something else evaluates, such as LibTorch; null: none. Neither
-/// `settings.weights` nor `settings.engine` count.
+/// The same with a network that something else evaluates, such as LibTorch; null: none.
 std::unique_ptr<ClothStepper> make_cloth(const Garment& garment,
                                          std::shared_ptr<Predictor> predictor,
-                                         const ClothStepperSettings& settings = {});
+                                         ClothStepperSettings settings = {},
+                                         bool small_steps_from_network = false);
 
 }  // namespace cloth

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "gnn/physics/solver/lanes.h"
@@ -139,21 +140,19 @@ std::vector<int> elimination_order(const Eigen::SparseMatrix<double>& matrix) {
     return {order.data(), order.data() + order.size()};
 }
 
-template <>
-bool SupernodalCholesky<double>::factorise(const Eigen::SparseMatrix<double>& matrix) {
-    Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
-        cholesky(matrix);
-    if (cholesky.info() != Eigen::Success) return false;
-    m_size = matrix.rows();
-    build_panels(Eigen::SparseMatrix<double>(cholesky.matrixL()));
-    return true;
-}
-
-template <>
-bool SupernodalCholesky<float>::factorise(const Eigen::SparseMatrix<double>& matrix) {
-    SupernodalCholesky<double> exact;
-    if (!exact.factorise(matrix)) return false;
-    *this = SupernodalCholesky(exact);
+template <class Real>
+bool SupernodalCholesky<Real>::factorise(const Eigen::SparseMatrix<double>& matrix) {
+    if constexpr (std::is_same_v<Real, double>) {
+        Eigen::SimplicialLLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>
+            cholesky(matrix);
+        if (cholesky.info() != Eigen::Success) return false;
+        m_size = matrix.rows();
+        build_panels(Eigen::SparseMatrix<double>(cholesky.matrixL()));
+    } else {
+        SupernodalCholesky<double> exact;
+        if (!exact.factorise(matrix)) return false;
+        *this = SupernodalCholesky(exact);
+    }
     return true;
 }
 

@@ -57,10 +57,7 @@ std::string StepSolver::name() const {
     const IterationLimits& limits = m_settings.quasi_newton;
     const double rate = m_settings.small_step_rate;
     const std::string small = rate > 0.0 ? "s" + std::to_string(std::lround(rate)) : "";
-    if (m_start) {
-        const std::string suffix = suffix_of(limits, '+') + small;
-        return m_start->name() + (suffix == "+3s120" ? "" : suffix);
-    }
+    if (m_start) return m_start->name() + suffix_of(limits, '+') + small;
     if (m_settings.minimiser == MinimiserKind::newton) return "reference";
     std::string name = "quasi-newton";
     if (limits.tolerance == 0.0) name += suffix_of(limits, '-');

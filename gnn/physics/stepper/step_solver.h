@@ -94,7 +94,7 @@ class StepSolver {
     /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with
     /// "sR" for R small steps a second, and with "-bdf2" at the end if that integrates; "reference"
     /// of Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with
-    /// a tolerance, "+KsR" with small steps, but for the default.
+    /// a tolerance, "+KsR" with small steps.
     std::string name() const;
     double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
     const StepSettings& settings() const { return m_settings; }

@@ -196,6 +196,10 @@ TEST_F(NetworkStep, IsNamedAfterItsWeightsWhereTheyHaveAName) {
     EXPECT_EQ(name(), "fast+2");
     weights.called = "small";
     EXPECT_EQ(name(), "small+2");
+    settings.step = StepSettings();
+    EXPECT_EQ(name(), "small") << "whole steps";
+    settings.small_steps_from_network = true;
+    EXPECT_EQ(name(), "small+3s120");
 }
 
 TEST_F(NetworkStep, IsIndependentUnlessThePredictorIsShared) {

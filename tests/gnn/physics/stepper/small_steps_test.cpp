@@ -269,7 +269,7 @@ TEST_F(SmallSteps, StandInTheName) {
     settings.step = StepSettings::whole();
     EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton");
     const auto start = std::make_shared<Uniform>(Vec3::Zero());
-    EXPECT_EQ(ClothStepper(m_hung, {}, start).name(), "uniform");
+    EXPECT_EQ(ClothStepper(m_hung, {}, start).name(), "uniform+3s120");
     EXPECT_EQ(ClothStepper(m_hung, small(2, 3), start).name(), "uniform+3s60");
 }
 
