@@ -159,7 +159,7 @@ std::vector<DataSet> data_sets() {
         {"bullet_scenes",
          figures + "bullet_scenes.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene small"
-         " --solvers bullet,quasi-newton-3s120,small --no-videos --out OUT",
+         " --solvers bullet,quasi-newton-3,small --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},
@@ -167,7 +167,7 @@ std::vector<DataSet> data_sets() {
          figures + "bullet_demos.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene"
          " Cloth,ClothAttach,CapsuleCollision,Collide3,Cutting1,SimpleCloth,Aero,Aero2"
-         " --solvers bullet,quasi-newton-3s120,small --reference none --no-videos --out OUT",
+         " --solvers bullet,quasi-newton-3,small --reference none --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},

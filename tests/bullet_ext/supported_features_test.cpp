@@ -127,13 +127,13 @@ TEST(SupportedFeatures, StiffnessIsReadOnceAndDoesNotDependOnIterations) {
         world.step(1.0 / 60.0);
         cloth->m_materials[0]->m_kLST = stiffness_later;
         if (attach_again) solver.attach(cloth);
-        world.step(1.0 / 60.0, 60);
+        world.step(1.0 / 60.0, 600);
         return nodePositions(*cloth);
     };
     const Points once = hanging(1, 1, false);
     EXPECT_EQ(once, hanging(10, 1, false));
     EXPECT_EQ(once, hanging(1, 0.02f, false));
-    EXPECT_LT(hanging(1, 0.02f, true).col(1).minCoeff(), once.col(1).minCoeff() - 0.01)
+    EXPECT_LT(hanging(1, 0.002f, true).col(1).minCoeff(), once.col(1).minCoeff() - 0.01)
         << "attached again it is softer";
 }
 

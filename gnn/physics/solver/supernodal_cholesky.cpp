@@ -277,7 +277,7 @@ template <class Real>
 double SupernodalCholesky<Real>::critical_share() const {
     const size_t first = numbers(m_halves[0]), second = numbers(m_halves[1]);
     const size_t inverse = m_top_rows.size() * m_top_rows.size();
-    return double(2 * std::max(first, second) + inverse / 2) /
+    return (2.0 * double(std::max(first, second)) + 0.5 * double(inverse)) /
            double(std::max(2 * (first + second) + inverse, size_t(1)));
 }
 
