@@ -39,13 +39,13 @@ bool same_bits(const Points& a, const Points& b) {
 }
 
 std::vector<Pair> all_pairs() {
-    // Without a network rounding decides whether the sleeve that an arm takes along is stretched to
-    // a little less than the 1.50 that are allowed, or a little more.
+    // Rounding decides whether the sleeve that an arm takes along is stretched to a little less
+    // than the 1.50 that are allowed, or a little more: 1.4 to 1.6.
     const std::string chance = "clipping-armature";
     std::vector<Pair> pairs;
     for (const HardCase& hard : hard_cases())
         for (const char* stepper : {"quasi-newton", "quasi-newton-3s120", "small", "fast"})
-            if (hard.name != chance || std::string(stepper).rfind("quasi-newton", 0) != 0)
+            if (hard.name != chance || std::string(stepper) == "fast")
                 pairs.emplace_back(hard.name, stepper);
     return pairs;
 }
