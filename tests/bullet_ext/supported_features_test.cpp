@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "bullet_ext/softBodyGarment.h"
@@ -127,13 +128,19 @@ TEST(SupportedFeatures, StiffnessIsReadOnceAndDoesNotDependOnIterations) {
         world.step(1.0 / 60.0);
         cloth->m_materials[0]->m_kLST = stiffness_later;
         if (attach_again) solver.attach(cloth);
-        world.step(1.0 / 60.0, 600);
+        world.step(1.0 / 60.0, 60);
         return nodePositions(*cloth);
+    };
+    const auto most_stretch = [](const Points& x) {
+        double longest = 0.0;
+        for (Eigen::Index i = 0; i + kNodes < x.rows(); ++i)
+            longest = std::max(longest, (x.row(i + kNodes) - x.row(i)).norm());
+        return longest * (kNodes - 1) - 1.0;  // of a sheet of one metre
     };
     const Points once = hanging(1, 1, false);
     EXPECT_EQ(once, hanging(10, 1, false));
     EXPECT_EQ(once, hanging(1, 0.02f, false));
-    EXPECT_LT(hanging(1, 0.002f, true).col(1).minCoeff(), once.col(1).minCoeff() - 0.01)
+    EXPECT_GT(most_stretch(hanging(1, 0.02f, true)), 2.0 * most_stretch(once))
         << "attached again it is softer";
 }
 
