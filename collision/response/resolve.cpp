@@ -8,14 +8,16 @@
 
 namespace cloth {
 
-int project_out(const SurfaceContacts& contacts, double distance, Points& x) {
+int project_out(const SurfaceContacts& contacts, double distance, Points& x, double kept) {
     int moved = 0;
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
         if (!contacts.has(i)) continue;
         const auto normal = contacts.normal1.row(i);
         const double height = normal.dot(x.row(i) - contacts.point1.row(i));
-        if (!(height < distance)) continue;
-        x.row(i) += (distance - height) * normal;
+        const double least =
+            kept > 0.0 ? std::clamp(contacts.distance[i], distance - kept, distance) : distance;
+        if (!(height < least)) continue;
+        x.row(i) += (least - height) * normal;
         ++moved;
     }
     return moved;

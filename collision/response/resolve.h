@@ -8,12 +8,13 @@
 namespace cloth {
 
 /// Pushes every vertex of `x` (|V| x 3, m, at t + dt) that is closer than `distance` (m) to its
-/// carried plane (point1, normal1) out along normal1 to that distance. Closed form, no query: the
-/// guess from which solvers and networks start. Returns how many vertices it moved.
+/// carried plane (point1, normal1) out along normal1 to that distance; one that was closer when its
+/// contact was found, to where it was, but to within `kept` (m) of `distance`. Closed form, no
+/// query: the guess from which solvers and networks start. Returns how many vertices it moved.
 ///
 /// The plane is that of one face: a vertex that slides past the end of a convex part is pushed
 /// although it is outside, by no more than it would have sunk below the plane.
-int project_out(const SurfaceContacts& contacts, double distance, Points& x);
+int project_out(const SurfaceContacts& contacts, double distance, Points& x, double kept = 0.0);
 
 /// What resolve_penetration() and ContactProjection found and left (m). What is deeper inside a
 /// mesh than the proximity's radius is not seen.

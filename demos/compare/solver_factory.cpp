@@ -68,17 +68,18 @@ Integrator take_integrator(std::string& name) {
     return Integrator::bdf2;
 }
 
-/// What all solvers of a potential have: the integrator that the name ends with, which is taken
-/// off, and what the scene says of limbs and self-contact.
-void set_scene(std::string& name, const ComparisonScene& scene, ClothStepperSettings& settings) {
-    settings.step.potential.integrator = take_integrator(name);
+/// What all solvers of a potential have: an integrator, and what the scene says of limbs and
+/// self-contact.
+void set_scene(Integrator integrator, const ComparisonScene& scene,
+               ClothStepperSettings& settings) {
+    settings.step.potential.integrator = integrator;
     settings.step.potential.self_contact = scene.self_contact();
     settings.guard.limbs = scene.has_limbs();
 }
 
 std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& scene) {
     ClothStepperSettings settings = ClothStepperSettings::reference();
-    set_scene(name, scene, settings);
+    set_scene(take_integrator(name), scene, settings);
     if (name != "reference")
         settings.step.newton.max_iterations = iterations_of(name, "newton-", 0, 1000);
     return std::make_unique<ClothStepper>(scene.garment(), settings);
@@ -86,22 +87,20 @@ std::unique_ptr<Stepper> make_newton(std::string name, const ComparisonScene& sc
 
 std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonScene& scene) {
     ClothStepperSettings settings;
-    std::string plain = name;
-    take_integrator(plain);
-    if (plain == "quasi-newton") {
+    const Integrator integrator = take_integrator(name);
+    if (name == "quasi-newton") {
         settings.step = StepSettings::whole();
-    } else if (const auto small = small_steps_named(plain)) {
+    } else if (const auto small = small_steps_named(name)) {
         settings.step = *small;
     } else {
-        const size_t cross = plain.find('x');
-        const std::string first = plain.substr(0, cross);
+        const size_t cross = name.find('x');
+        const std::string first = name.substr(0, cross);
         settings.step = StepSettings::whole(
             IterationLimits::exactly(iterations_of(first, "quasi-newton-", 0, 1000)));
         settings.guard.max_substeps = 1;
-        if (cross != std::string::npos)
-            settings.substeps = iterations_of(plain, first + "x", 1, 64);
+        if (cross != std::string::npos) settings.substeps = iterations_of(name, first + "x", 1, 64);
     }
-    set_scene(name, scene, settings);
+    set_scene(integrator, scene, settings);
     return std::make_unique<ClothStepper>(scene.garment(), settings);
 }
 
@@ -171,9 +170,8 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
                                       const SolverSettings& settings) {
     ClothStepperSettings learned;
     bool small_steps = false;
-    std::string plain = name;
-    take_integrator(plain);
-    const NetworkName network(plain);
+    const Integrator integrator = take_integrator(name);
+    const NetworkName network(name);
     if (!network.as_shipped) {  // NAME+K: exactly that in every frame
         const std::string prefix = network.variant + "+", whole = prefix + network.refine;
         if (const auto small = small_steps_named(whole, prefix)) {
@@ -185,7 +183,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
             learned.guard.max_substeps = 1;
         }
     }
-    set_scene(name, scene, learned);
+    set_scene(integrator, scene, learned);
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");

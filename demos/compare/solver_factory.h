@@ -39,12 +39,15 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 /// | bullet-KxS         | K iterations, S sub-steps                                     |
 /// | reference          | Newton's method, converged                                    |
 /// | newton-K           | K iterations of it                                            |
-/// | quasi-newton       | quasi-Newton with error control, guarded: as it should be used|
+/// | quasi-newton       | whole quasi-Newton steps with error control, guarded          |
+/// | quasi-newton-KsR   | R small steps a second, K iterations each, guarded; 3s120 is  |
+/// |                    | the default of the library                                    |
 /// | quasi-newton-K     | K quasi-Newton iterations                                     |
 /// | quasi-newton-KxS   | the same in S sub-steps                                       |
 /// | xpbd-N             | springs relaxed in N sub-steps                                |
 /// | VARIANT            | the network VARIANT.safetensors with error control, guarded   |
 /// | VARIANT+K          | the network and exactly K quasi-Newton iterations             |
+/// | VARIANT+KsR        | the network and such small steps, guarded                     |
 /// | torch-VARIANT[+K]  | the same, run by LibTorch instead of the engine               |
 /// | bf16-VARIANT[+K]   | the same, in the engine with products in bfloat16             |
 ///
@@ -64,13 +67,13 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings);
 
-/// What the name of a network says: [torch-|bf16-]VARIANT[+K].
+/// What the name of a network says: [torch-|bf16-]VARIANT[+K[sR]].
 struct NetworkName {
     explicit NetworkName(const std::string& name);
     bool torch, bfloat16;
     std::string variant;
-    std::string refine;  ///< K as it was written
-    bool as_shipped;     ///< no +K
+    std::string refine;  ///< K or KsR as it was written
+    bool as_shipped;     ///< no +
 };
 
 /// The networks whose weights lie in the folder (empty: the committed ones), in alphabetical order.

@@ -16,7 +16,7 @@ namespace cloth {
 ///     ridge      the same, shared out over the corners of a face
 ///     friction   mu N / q (I - n n' - u u' / q^2),  q = sqrt(s^2 + |u|^2)
 ///
-/// Contact is flat at depth 0, where the starting guess leaves the vertices, so the tangent
+/// Contact is flat at depth 0, where guesses leave what only now touches, so the tangent
 /// stiffness alone lets the next step fall through the surface. Two remedies: vertices that a plain
 /// step would press deeper get the stiffness of the depth they are heading for (up to a limit), and
 /// a trial point is never deeper than a limit beyond the point it comes from.

@@ -1,6 +1,5 @@
 #include "gnn/physics/stepper/guess.h"
 
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -31,30 +30,30 @@ void move_to_goals(const Garment& garment, const Boundary& boundary, Points& x) 
         x.row(goal.vertex) = goal.within(x.row(goal.vertex)).transpose();
 }
 
+namespace {
+
+/// @param kept  see project_out()
+void extrapolate(const Garment& garment, const ClothState& state, const Boundary& boundary,
+                 const SurfaceContacts& contacts, double dt, double contact_distance, double kept,
+                 Points& x) {
+    linear_extrapolation(state, dt, x);
+    move_to_goals(garment, boundary, x);
+    if (!contacts.obstacle.empty()) project_out(contacts, contact_distance, x, kept);
+    place_pins(garment, boundary, x);
+}
+
+}  // namespace
+
 void starting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt, double contact_distance,
                     Points& x) {
-    linear_extrapolation(state, dt, x);
-    move_to_goals(garment, boundary, x);
-    if (!contacts.obstacle.empty()) project_out(contacts, contact_distance, x);
-    place_pins(garment, boundary, x);
+    extrapolate(garment, state, boundary, contacts, dt, contact_distance, 0.0, x);
 }
 
 void resting_guess(const Garment& garment, const ClothState& state, const Boundary& boundary,
                    const SurfaceContacts& contacts, double dt, double contact_distance, Points& x) {
     constexpr double most_depth = 3e-4;  // m
-    linear_extrapolation(state, dt, x);
-    move_to_goals(garment, boundary, x);
-    const auto count = static_cast<Eigen::Index>(contacts.obstacle.size());
-    for (Eigen::Index i = 0; i < count; ++i) {
-        if (!contacts.has(i)) continue;
-        const auto normal = contacts.normal1.row(i);
-        const double least =
-            std::clamp(contacts.distance[i], contact_distance - most_depth, contact_distance);
-        const double height = normal.dot(x.row(i) - contacts.point1.row(i));
-        if (height < least) x.row(i) += (least - height) * normal;
-    }
-    place_pins(garment, boundary, x);
+    extrapolate(garment, state, boundary, contacts, dt, contact_distance, most_depth, x);
 }
 
 namespace {

@@ -118,8 +118,9 @@ int StepSolver::small_steps(double dt) const {
 }
 
 int StepSolver::small_steps(double dt, const ClothState& state) const {
-    const bool moves = state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
-    return moves && std::isinf(m_most_residual) ? small_steps(dt) : 1;
+    const int count = std::isinf(m_most_residual) ? small_steps(dt) : 1;
+    if (count == 1) return 1;
+    return state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed ? count : 1;
 }
 
 StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
@@ -276,7 +277,7 @@ StepReport StepSolver::finish(const Boundary& boundary, double dt, ClothState& s
 void StepSolver::internal_forces(const Points& x, Points& forces) const {
     m_potential.internal_forces(x, forces);
     if (m_parts == 1 || !same_points(x, m_x)) return;
-    Points at_end;
+    static thread_local Points at_end;  // of the thread that calls
     for (const Points& end : m_part_ends) {
         m_potential.internal_forces(end, at_end);
         forces += at_end;
@@ -306,9 +307,11 @@ const PotentialValue* StepSolver::choose_start(const Boundary& boundary,
                                                const SurfaceContacts& contacts, StepStart* start,
                                                const IterationLimits& limits, double dt,
                                                const ClothState& state, StepReport& report) {
-    const bool as_learned = start || m_settings.minimiser == MinimiserKind::newton;
-    (as_learned ? starting_guess : resting_guess)(*m_garment, state, boundary, contacts, dt,
-                                                  m_potential.settings().contact_distance, m_guess);
+    // Networks learned from the one; Newton's method reaches the minimum from either.
+    const bool resting = !start && m_settings.minimiser == MinimiserKind::quasi_newton;
+    const auto guess = resting ? resting_guess : starting_guess;
+    guess(*m_garment, state, boundary, contacts, dt, m_potential.settings().contact_distance,
+          m_guess);
     m_potential.separate_self_contact(m_guess);
     m_x = m_guess;
     if (!start) return nullptr;

@@ -119,7 +119,8 @@ class StepSolver {
     void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
-    /// A whole step, from the start that the settings name, with the iterations of all small steps.
+    /// A whole step, from the start if there is one. Where settings ask for small steps it has as
+    /// many iterations as StepSettings::small_step_rate says of cloth that hardly moves.
     /// The arguments have passed is_valid_step(); a step that fails leaves the state as it was.
     virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
 
