@@ -10,7 +10,7 @@
 namespace cloth {
 namespace {
 
-constexpr double reach = 0.05;  // surfaces this near the garment's box count (m)
+constexpr double kReach = 0.05;  // surfaces this near the garment's box count (m)
 
 using Box = Eigen::AlignedBox3d;
 
@@ -22,7 +22,7 @@ Box box_of(const Points& x) {
 Box swept_box(const ClothState& state, const Vec3& shift) {
     Box box = box_of(state.x);
     box.extend(Box(box).translate(shift));
-    return Box(box.min() - Vec3::Constant(reach), box.max() + Vec3::Constant(reach));
+    return Box(box.min() - Vec3::Constant(kReach), box.max() + Vec3::Constant(kReach));
 }
 
 /// Of the vertices, and of the faces: a large one may be near although no corner of it is.
@@ -82,7 +82,7 @@ double motion_over(const Obstacle& shape, const Garment& garment, const Points& 
     double longest = 0.0, farthest = 0.0;  // m²
     for (Eigen::Index i = 0; i < x0.rows(); ++i) longest = std::max(longest, squared_way(i));
     // No point of a triangle is farther from all corners than this share of its longest edge.
-    const double near = std::sqrt(longest) + reach + longest_edge(garment, x0) / std::sqrt(3.0);
+    const double near = std::sqrt(longest) + kReach + longest_edge(garment, x0) / std::sqrt(3.0);
     for (Eigen::Index i = 0; i < x0.rows(); ++i) {
         const double own = squared_way(i);
         if (own > farthest &&
