@@ -59,7 +59,7 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
              "only these; small: those of our own, demos: those of\nBullet's SoftDemo and "
              "SimpleCloth");
     add_list(app, "--solvers", options.solvers,
-             "bullet, quasi-newton-K, quasi-newton-KsR (R a second),\n"
+             "bullet, quasi-newton-K, quasi-newton-KsR[-cgN] (R a second),\n"
              "or a network NAME[+K]; default bullet,small");
     add_list(app, "--rates", rates, "even steps per second, 10 to 1000, default 60");
     add_list(app, "--steps", options.steps,

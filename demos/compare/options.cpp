@@ -43,7 +43,7 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
     add_list(app, "--solvers", options.solvers,
              "bullet, bullet-fine, bullet-K (K iterations), reference,\n"
              "quasi-newton, quasi-newton-K (K iterations),\n"
-             "quasi-newton-KsR (R small steps a second), xpbd-N (N\n"
+             "quasi-newton-KsR[-cgN] (R small steps a second), xpbd-N (N\n"
              "substeps), skinning, skinning-raw (the garment's own\n"
              "network, if it has one), and networks: small, fast, baseline, sampling,\n"
              "reduction, as shipped (10 refinement iterations or more,\n"

@@ -228,7 +228,7 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     throw UsageError(
         "solver " + variant +
         ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
-        "quasi-newton, quasi-newton-K, quasi-newton-KsR, quasi-newton-KxS, xpbd-N, skinning, "
+        "quasi-newton, quasi-newton-K, quasi-newton-KsR[-cgN], quasi-newton-KxS, xpbd-N, skinning, "
         "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
         "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
@@ -238,9 +238,14 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
                                               const std::string& prefix) {
     const size_t mark = solver.find('s', prefix.size());
     if (!starts_with(solver, prefix) || mark == std::string::npos) return std::nullopt;
-    const std::string first = solver.substr(0, mark);
-    const int rate = iterations_of(solver, first + "s", 1, 9999);
-    return StepSettings::in_small_steps(rate, iterations_of(first, prefix, 0, 1000));
+    const size_t end = solver.find("-cg", mark);
+    const std::string first = solver.substr(0, mark), steps = solver.substr(0, end);
+    const int rate = iterations_of(steps, first + "s", 1, 9999);
+    StepSettings settings =
+        StepSettings::in_small_steps(rate, iterations_of(first, prefix, 0, 1000));
+    if (end != std::string::npos)
+        settings.quasi_newton.hessian_cg_iterations = iterations_of(solver, steps + "-cg", 1, 200);
+    return settings;
 }
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,

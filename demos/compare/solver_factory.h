@@ -42,6 +42,7 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 /// | quasi-newton       | whole quasi-Newton steps with error control, guarded          |
 /// | quasi-newton-KsR   | R small steps a second, K iterations each, guarded; 3s120 is  |
 /// |                    | the default of the library                                    |
+/// | quasi-newton-KsR-cgN | the same by Newton's method, N conjugate gradients each     |
 /// | quasi-newton-K     | K quasi-Newton iterations                                     |
 /// | quasi-newton-KxS   | the same in S sub-steps                                       |
 /// | xpbd-N             | springs relaxed in N sub-steps                                |

@@ -106,7 +106,8 @@ std::vector<DataSet> data_sets() {
          figures + "stiff.json",
          "build/release/demos/speed_error --scene all --fabric real --frames 30 --relative-to "
          "xpbd-40 --solvers bullet-fine,xpbd-40,xpbd-100,quasi-newton-10,quasi-newton,"
-         "quasi-newton-bdf2,quasi-newton-3s120 --out OUT",
+         "quasi-newton-bdf2,quasi-newton-3s120,quasi-newton-1s120-cg10,quasi-newton-2s120-cg10"
+         " --out OUT",
          "speed_error.json",
          {},
          {}},

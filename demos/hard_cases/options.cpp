@@ -31,7 +31,7 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
                  "through limbs that are inside other limbs (with limbs, depth is\n"
                  "that inside the others)");
     add_list(app, "--steppers", options.steppers,
-             "reference, newton-K, quasi-newton-K, quasi-newton-KsR,\n"
+             "reference, newton-K, quasi-newton-K, quasi-newton-KsR[-cgN],\n"
              "quasi-newton-KxS, xpbd-N, bullet, bullet-fine, bullet-KxS,\n"
              "or a network NAME[+K]");
     app.add_option("--frames-scale", options.frames_scale,

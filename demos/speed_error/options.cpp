@@ -74,7 +74,7 @@ SpeedErrorOptions parse_speed_error_options(const std::vector<std::string>& argu
     add_list(app, "--solvers", options.solvers,
              "bullet-KxS (K iterations, S sub-steps per frame), xpbd-N (N\n"
              "sub-steps), quasi-newton-K, newton-K (K iterations),\n"
-             "quasi-newton-KsR (R small steps a second),\n"
+             "quasi-newton-KsR[-cgN] (R small steps a second),\n"
              "quasi-newton (whole steps), NAME (a network as shipped), reference,\n"
              "NAME+K (K refinement iterations), torch-NAME+K (by LibTorch\n"
              "instead of the engine), bf16-NAME+K (products in bfloat16),\n"

@@ -50,6 +50,7 @@ TEST(SettingsRanges, QuasiNewton) {
     expect_range(name + "least_iterations", &S::least_iterations, 0, 10000, use);
     expect_range(name + "history", &S::history, 0, 50, use);
     expect_range(name + "contact_cg_iterations", &S::contact_cg_iterations, 0, 50, use);
+    expect_range(name + "hessian_cg_iterations", &S::hessian_cg_iterations, 0, 200, use);
 }
 
 TEST(SettingsRanges, Step) {

@@ -57,23 +57,25 @@ StepperCase substepped(int substeps) {
     return result;
 }
 
-StepperCase small_steps() {
-    const auto make = [](const Garment& garment) {
+StepperCase small_steps(const std::string& name, const StepSettings& step) {
+    const auto make = [step](const Garment& garment) {
         ClothStepperSettings settings;
-        settings.step = StepSettings::in_small_steps();
+        settings.step = step;
         return std::make_unique<ClothStepper>(garment, settings);
     };
-    StepperCase result{"SmallSteps", make, 1e-6, {}};
+    StepperCase result{name, make, 1e-6, {}};
     result.exceptions = {{Promise::free_fall,
                           "it falls in small steps, by another closed form (tested on its own)"}};
     return result;
 }
 
-INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
-                         ::testing::Values(reference(), quasi_newton(1), quasi_newton(5),
-                                           quasi_newton(20), bdf2(), substepped(4), small_steps(),
-                                           xpbd(1), xpbd(20), xpbd(100)),
-                         case_name);
+INSTANTIATE_TEST_SUITE_P(
+    Physics, StepperContract,
+    ::testing::Values(reference(), quasi_newton(1), quasi_newton(5), quasi_newton(20), bdf2(),
+                      substepped(4), small_steps("SmallSteps", StepSettings::in_small_steps()),
+                      small_steps("NewtonInSmallSteps", StepSettings::newton_in_small_steps()),
+                      xpbd(1), xpbd(20), xpbd(100)),
+    case_name);
 
 }  // namespace
 }  // namespace cloth::test

@@ -55,19 +55,22 @@ void evaluate(HingeBlock& block, const HingeConstants& constants, int count) {
 
 }  // namespace
 
-BendingEnergy::BendingEnergy(const Garment& garment) : m_garment(&garment) {
+double hinge_stiffness(const Garment& garment, const Hinge& hinge) {
     const Points& rest = garment.rest().vertices;
+    const Vec3 origin = rest.row(hinge[0]);
+    const Vec3 e = rest.row(hinge[1]).transpose() - origin;
+    const double doubled_areas = e.cross(rest.row(hinge[2]).transpose() - origin).norm() +
+                                 e.cross(rest.row(hinge[3]).transpose() - origin).norm();
+    return garment.fabric().bending * e.squaredNorm() / (2.0 * doubled_areas);
+}
+
+BendingEnergy::BendingEnergy(const Garment& garment) : m_garment(&garment) {
     double edge = garment.mean_edge_length(), area = garment.face_areas().mean();
     m_min_edge = 1e-8 * edge * edge;
     m_min_normal = 1e-8 * area * area;
     m_stiffness.reserve(garment.hinges().size());
-    for (const Hinge& h : garment.hinges()) {
-        const Vec3 origin = rest.row(h[0]);
-        const Vec3 e = rest.row(h[1]).transpose() - origin;
-        const double doubled_areas = e.cross(rest.row(h[2]).transpose() - origin).norm() +
-                                     e.cross(rest.row(h[3]).transpose() - origin).norm();
-        m_stiffness.push_back(garment.fabric().bending * e.squaredNorm() / (2.0 * doubled_areas));
-    }
+    for (const Hinge& hinge : garment.hinges())
+        m_stiffness.push_back(hinge_stiffness(garment, hinge));
 }
 
 template <bool with_gradient>

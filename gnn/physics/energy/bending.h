@@ -7,6 +7,9 @@
 
 namespace cloth {
 
+/// Factor of (theta - theta_rest)^2 / 2 in a hinge's energy: k l^2 / (4 (A0 + A1)) (J).
+double hinge_stiffness(const Garment& garment, const Hinge& hinge);
+
 /// Bending energy: quadratic in the dihedral angle of every interior edge,
 ///
 ///     E = k l^2 / (4 (A0 + A1)) (theta - theta_rest)^2 / 2,

@@ -54,23 +54,30 @@ void evaluate(FaceBlock& block, const FaceConstants& constants, int count) {
 
 }  // namespace
 
+RestFace::RestFace(const TriMesh& rest, Eigen::Index face) {
+    const auto corners = rest.faces.row(face);
+    const Vec3 origin = rest.vertices.row(corners[0]);
+    const Vec3 p = rest.vertices.row(corners[1]).transpose() - origin;
+    const Vec3 q = rest.vertices.row(corners[2]).transpose() - origin;
+    const double length = p.norm();
+    const double along = p.dot(q) / length;
+    const double height = p.cross(q).norm() / length;
+    inverse00 = 1.0 / length;
+    inverse01 = -along / (length * height);
+    inverse11 = 1.0 / height;
+    area = 0.5 * length * height;
+}
+
 StrainEnergy::StrainEnergy(const Garment& garment) : m_garment(&garment) {
     const size_t count = static_cast<size_t>(garment.face_count());
     m_inverse00.resize(count), m_inverse01.resize(count), m_inverse11.resize(count);
     m_area.resize(count);
-    const TriMesh& rest = garment.rest();
     for (size_t f = 0; f < count; ++f) {
-        const auto face = rest.faces.row(static_cast<Eigen::Index>(f));
-        const Vec3 origin = rest.vertices.row(face[0]);
-        const Vec3 p = rest.vertices.row(face[1]).transpose() - origin;
-        const Vec3 q = rest.vertices.row(face[2]).transpose() - origin;
-        const double length = p.norm();
-        const double along = p.dot(q) / length;
-        const double height = p.cross(q).norm() / length;
-        m_inverse00[f] = 1.0 / length;
-        m_inverse01[f] = -along / (length * height);
-        m_inverse11[f] = 1.0 / height;
-        m_area[f] = 0.5 * length * height;
+        const RestFace face(garment.rest(), static_cast<Eigen::Index>(f));
+        m_inverse00[f] = face.inverse00;
+        m_inverse01[f] = face.inverse01;
+        m_inverse11[f] = face.inverse11;
+        m_area[f] = face.area;
     }
 }
 

@@ -8,6 +8,15 @@
 
 namespace cloth {
 
+/// A triangle at rest: Dm is upper triangular in a frame along the first edge, and so is its
+/// inverse.
+struct RestFace {
+    double inverse00, inverse01, inverse11;  ///< of Dm (1/m)
+    double area;                             ///< (m^2)
+
+    RestFace(const TriMesh& rest, Eigen::Index face);
+};
+
 /// Membrane energy: Saint Venant-Kirchhoff per rest triangle,
 ///
 ///     E = A (mu tr(G^2) + lambda / 2 tr(G)^2),   G = (F^T F - I) / 2,   F = Ds Dm^-1 (3 x 2),
@@ -35,9 +44,7 @@ class StrainEnergy {
     int count() const { return static_cast<int>(m_area.size()); }
 
     const Garment* m_garment;
-    // Dm is upper triangular in a frame along the first edge, and so is its inverse (1/m).
-    std::vector<double> m_inverse00, m_inverse01, m_inverse11;
-    std::vector<double> m_area;
+    std::vector<double> m_inverse00, m_inverse01, m_inverse11, m_area;  ///< see RestFace
 };
 
 }  // namespace cloth

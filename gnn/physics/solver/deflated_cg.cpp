@@ -10,73 +10,16 @@ void DeflatedCg<Real>::take_fields(const AffineCorrection& affine) {
 }
 
 template <class Real>
-void DeflatedCg<Real>::allocate(const Factor& factor) {
-    m_factor = &factor;
-    const size_t lanes = 4 * static_cast<size_t>(factor.size());
-    for (std::vector<Real>* array :
-         {&m_fields, &m_p_fields, &m_residual, &m_direction, &m_p_direction})
-        array->resize(lanes, Real(0));
-    m_solution.resize(lanes, 0.0);
-    m_work.resize(4 * factor.work_rows(), Real(0));
-    m_step.resize(factor.size(), 3);
-}
-
-template <class Real>
-template <class Visit>
-void DeflatedCg<Real>::for_rows(size_t part, const Visit& visit) const {
-    for (const auto& rows : m_factor->rows(part))
-        for (int row = rows.begin; row < rows.end; ++row) visit(static_cast<size_t>(row));
-}
-
-/// Of a term for each row, in double precision; two sums, since one has to wait for each addition.
-template <class Real>
-template <class Term>
-double DeflatedCg<Real>::sum_rows(size_t part, const Term& term) const {
-    DoubleLanes even = {}, odd = {};
-    for (const auto& rows : m_factor->rows(part)) {
-        auto row = static_cast<size_t>(rows.begin);
-        const auto end = static_cast<size_t>(rows.end);
-        for (; row + 1 < end; row += 2) {
-            even += widened(term(row));
-            odd += widened(term(row + 1));
-        }
-        if (row < end) even += widened(term(row));
-    }
-    return sum(DoubleLanes(even + odd));
-}
-
-template <class Real>
-const Points& DeflatedCg<Real>::start(const Factor& factor, const Points& b) {
-    allocate(factor);
-    const int threads = factor.threads();
-#pragma omp parallel num_threads(threads) if (threads > 1)
-    {
-        const Crew crew;
-        crew.for_parts([&](size_t part) { take(part, b); });
-        factor.solve(crew, m_work.data());
-        crew.for_parts([&](size_t part) {
-            for_rows(part, [&](size_t row) {
-                for (size_t k = 0; k < 3; ++k)
-                    m_step.data()[3 * row + k] = double(m_work[4 * row + k]);
-            });
-        });
-    }
-    return m_step;
-}
-
-template <class Real>
-void DeflatedCg<Real>::take(size_t part, const Points& b) {
-    for_rows(part, [&](size_t row) {
-        const double* const from = b.data() + 3 * row;
-        const Lanes<Real> lanes = {Real(from[0]), Real(from[1]), Real(from[2]), Real(0)};
-        store<Real>(m_residual.data() + 4 * row, lanes);
-        store<Real>(m_work.data() + 4 * row, lanes);
-    });
+void DeflatedCg<Real>::allocate() {
+    for (std::vector<Real>* array : {&m_fields, &m_p_fields, &m_direction, &m_p_direction})
+        array->resize(lanes(), Real(0));
+    m_solution.resize(lanes(), 0.0);
 }
 
 template <class Real>
 void DeflatedCg<Real>::solve(const ContactHessian& contacts, AffineCorrection* affine,
                              int iterations, Points& out) {
+    allocate();
     for (auto& shares : m_shares) shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
     out.resize(m_step.rows(), 3);
     const int threads = m_factor->threads();
@@ -162,9 +105,7 @@ void DeflatedCg<Real>::prepare(size_t part, const ContactHessian& contacts, bool
 template <class Real>
 void DeflatedCg<Real>::measure(size_t part, bool deflated) {
     Sums& sums = m_sums[part];
-    sums.power = sum_rows(part, [&](size_t row) -> Lanes<Real> {
-        return load(m_residual.data() + 4 * row) * load(m_work.data() + 4 * row);
-    });
+    sums.power = power_of(part);
     if (!deflated) return;
     for (auto& row : sums.moments) store(row, DoubleLanes{});
     m_shares[part].add_moments(m_fields.data(), m_work.data(), sums.moments);

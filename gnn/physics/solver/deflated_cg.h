@@ -5,7 +5,7 @@
 
 #include "gnn/physics/solver/affine_correction.h"
 #include "gnn/physics/solver/contact_shares.h"
-#include "gnn/physics/solver/supernodal_cholesky.h"
+#include "gnn/physics/solver/preconditioned_rows.h"
 
 namespace cloth {
 
@@ -25,22 +25,20 @@ namespace cloth {
 ///
 /// One object serves one thread at a time; after the first call nothing is allocated.
 template <class Real>
-class DeflatedCg {
+class DeflatedCg : public PreconditionedRows<Real> {
  public:
-    using Factor = SupernodalCholesky<Real>;
-
     void take_fields(const AffineCorrection& affine);
 
-    /// Begins a solve. @return  P^-1 b (n x 3)
-    const Points& start(const Factor& factor, const Points& b);
-
-    /// Goes on with it. Where `affine` is not null and F' A F is positive definite, its fields
-    /// (those of the last take_fields()) are deflated.
+    /// Goes on with the solve that was begun. Where `affine` is not null and F' A F is positive
+    /// definite, its fields (those of the last take_fields()) are deflated.
     void solve(const ContactHessian& contacts, AffineCorrection* affine, int iterations,
                Points& out);
 
  private:
     using Coefficients = AffineFields::Coefficients;
+    using Base = PreconditionedRows<Real>;
+    using Base::for_rows, Base::lanes, Base::m_factor, Base::m_residual, Base::m_step, Base::m_work,
+        Base::power_of, Base::sum_rows;
     /// Of one part of the rows.
     struct alignas(64) Sums {
         double power;      ///< r . z
@@ -56,11 +54,6 @@ class DeflatedCg {
     double curvature(const AffineCorrection* affine, const Coefficients& c) const;
 
     // These are about one part of the rows.
-    template <class Visit>
-    void for_rows(size_t part, const Visit& visit) const;
-    template <class Term>
-    double sum_rows(size_t part, const Term& term) const;
-    void take(size_t part, const Points& b);
     void prepare(size_t part, const ContactHessian& contacts, bool deflated);
     void measure(size_t part, bool deflated);
     void turn_affinely(size_t part, const Coefficients& c);
@@ -71,14 +64,11 @@ class DeflatedCg {
     double total(double Sums::*sum) const;
     Coefficients total_moments() const;
     AffineFields::System total_system() const;
-    void allocate(const Factor& factor);
+    void allocate();
 
-    const Factor* m_factor = nullptr;
-    Points m_step;                           ///< n x 3
     std::vector<Real> m_fields, m_p_fields;  ///< n x 4: F, P F
     std::vector<double> m_solution;  ///< n x 4: rounded, it would not be what the residual is of
-    std::vector<Real> m_residual, m_direction, m_p_direction;  ///< n x 4
-    std::vector<Real> m_work;  ///< work_rows() x 4: P^-1 r, then A d, then r
+    std::vector<Real> m_direction, m_p_direction;  ///< n x 4
     typename ContactShares<Real>::Parts m_shares;
     std::array<Sums, Crew::parts> m_sums;
     bool m_deflated = false;

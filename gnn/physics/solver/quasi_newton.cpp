@@ -57,11 +57,19 @@ QuasiNewton::QuasiNewton(const Garment& garment, QuasiNewtonSettings settings)
     check(settings, "QuasiNewtonSettings");
     check_range("QuasiNewtonSettings.history", settings.history, 0, 50);
     check_range("QuasiNewtonSettings.contact_cg_iterations", settings.contact_cg_iterations, 0, 50);
+    check_range("QuasiNewtonSettings.hessian_cg_iterations", settings.hessian_cg_iterations, 0,
+                200);
     const Eigen::Index free = m_matrix.free_count();
     m_history.allocate(settings.history, free);
     for (Points* array : {&m_gradient, &m_next_gradient, &m_direction, &m_right_side, &m_gathered,
                           &m_preconditioned})
         array->resize(free, 3);
+}
+
+bool QuasiNewton::prepare(const Garment& garment, double dt) {
+    if (!m_matrix.prepare(garment, dt)) return false;
+    if (m_settings.hessian_cg_iterations > 0) m_matrix.prepare_hessian(garment);
+    return true;
 }
 
 void QuasiNewton::precondition(const Points& gradient, Points& out) const {
@@ -120,8 +128,8 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
     if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
     if (!m_continued) m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
-    if (m_settings.contact_cg_iterations > 0 && m_contacts.active() &&
-        !(m_continued && m_matrix.deflate_as_before()))
+    if (m_settings.hessian_cg_iterations == 0 && m_settings.contact_cg_iterations > 0 &&
+        m_contacts.active() && !(m_continued && m_matrix.deflate_as_before()))
         m_matrix.deflate(x);
     if (at_x) {
         report.energy = at_x->energy;
@@ -152,7 +160,8 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
         if (!line_search(potential, x, report)) return false;
     }
     ++report.iterations;
-    m_history.push(m_direction, m_gradient, m_next_gradient);
+    if (m_settings.hessian_cg_iterations == 0)
+        m_history.push(m_direction, m_gradient, m_next_gradient);
     m_gradient.swap(m_next_gradient);
     update_residual(potential, report);
     return true;
@@ -160,6 +169,12 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
 
 void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
     m_right_side = -m_gradient;
+    if (m_settings.hessian_cg_iterations > 0) {
+        m_contacts.linearise(potential, x);
+        m_matrix.solve(potential.garment(), x, m_right_side, m_contacts,
+                       m_settings.hessian_cg_iterations, m_direction);
+        return;
+    }
     m_history.first_loop(m_right_side);
     m_contacts.linearise(potential, x);
     if (m_settings.contact_cg_iterations > 0 && m_contacts.active())

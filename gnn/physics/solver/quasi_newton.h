@@ -48,6 +48,10 @@ struct QuasiNewtonSettings : IterationLimits {
     /// Iterations of a solve with P + contact blocks, 0 to 50; 0: contact stays out of the matrix.
     /// Affine displacements of the garment are deflated from them.
     int contact_cg_iterations = 7;
+    /// Iterations of a solve with the FabricHessian of each point + contact blocks in place of P
+    /// and the history, 0 to 200; 0: none. An iteration costs five times as much, and stiff cloth,
+    /// which P holds back where it could bend, needs one or two where the history needs a hundred.
+    int hessian_cg_iterations = 0;
 
     QuasiNewtonSettings() = default;
     QuasiNewtonSettings(const IterationLimits& limits) : IterationLimits(limits) {}
@@ -71,7 +75,8 @@ struct MinimiseReport {
 /// Minimises the incremental potential with one constant matrix P (see QuasiNewtonMatrix) in the
 /// Hessian's place, an L-BFGS history that learns the difference, and a backtracking line search
 /// (Liu, Bouaziz and Kavan 2017, "Quasi-Newton methods for real-time simulation of hyperelastic
-/// materials", algorithm 1). Obstacles, which P does not know, come in by a ContactHessian.
+/// materials", algorithm 1). Obstacles, which P does not know, come in by a ContactHessian. With
+/// hessian_cg_iterations it is an inexact Newton method, which P preconditions.
 ///
 ///     QuasiNewton solver(garment, {});
 ///     potential.begin_step(state, boundary, contacts, dt);
@@ -100,7 +105,7 @@ class QuasiNewton {
 
     /// Makes P for a fabric and a time step (s) ahead of time; those of the last 16 are kept.
     /// False: not positive definite.
-    bool prepare(const Garment& garment, double dt) { return m_matrix.prepare(garment, dt); }
+    bool prepare(const Garment& garment, double dt);
 
     /// out = P^-1 gradient (|V| x 3, m), zero at pinned vertices. Needs `prepare` or `minimise`
     /// first.

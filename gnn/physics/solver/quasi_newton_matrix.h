@@ -2,11 +2,13 @@
 
 #include <list>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "gnn/physics/solver/affine_correction.h"
 #include "gnn/physics/solver/contact_hessian.h"
 #include "gnn/physics/solver/deflated_cg.h"
+#include "gnn/physics/solver/hessian_cg.h"
 #include "gnn/physics/solver/quasi_newton_system.h"
 
 namespace cloth {
@@ -59,6 +61,13 @@ class QuasiNewtonMatrix {
     /// P^-1 b.
     void solve(const Points& b, ContactHessian& contacts, int iterations, Points& out) const;
 
+    /// out = (H + contact blocks)^-1 b (free), H the FabricHessian at x (|V| x 3, m), by so many
+    /// conjugate-gradient iterations preconditioned by P.
+    void solve(const Garment& garment, const Points& x, const Points& b, ContactHessian& contacts,
+               int iterations, Points& out);
+    /// Builds what that needs of the garment, ahead of time.
+    void prepare_hessian(const Garment& garment);
+
     const std::vector<int>& row_of() const {
         return m_system->row_of();
     }  ///< |V|: free row, -1 for a pin
@@ -66,6 +75,15 @@ class QuasiNewtonMatrix {
     Eigen::SparseMatrix<double> matrix() const;  ///< P (n x n), both triangles
 
  private:
+    template <class Real>
+    struct HessianSolver {
+        std::optional<FabricHessian<Real>> hessian;
+        HessianCg<Real> cg;
+    };
+    template <class Real>
+    void solve(const SupernodalCholesky<Real>& factor, HessianSolver<Real>& solver,
+               const Garment& garment, const Points& x, const Points& b, ContactHessian& contacts,
+               int iterations, Points& out);
     template <class Real>
     void solve(const SupernodalCholesky<Real>& factor, DeflatedCg<Real>& cg, const Points& b,
                ContactHessian& contacts, int iterations, Points& out) const;
@@ -81,6 +99,8 @@ class QuasiNewtonMatrix {
     Points m_points;                      ///< n x 3 (m)
     mutable DeflatedCg<float> m_fast_cg;  ///< of the two, that of the factor in use is
     mutable DeflatedCg<double> m_exact_cg;
+    HessianSolver<float> m_fast_hessian;
+    HessianSolver<double> m_exact_hessian;
 };
 
 }  // namespace cloth

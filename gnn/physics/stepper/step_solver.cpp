@@ -62,6 +62,8 @@ std::string StepSolver::name() const {
     std::string name = "quasi-newton";
     if (limits.tolerance == 0.0) name += suffix_of(limits, '-');
     name += small;
+    if (const int cg = m_settings.quasi_newton.hessian_cg_iterations; cg > 0)
+        name += "-cg" + std::to_string(cg);
     if (m_settings.potential.integrator == Integrator::bdf2) name += "-bdf2";
     return name;
 }
@@ -95,8 +97,10 @@ StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& st
     const int count = small_steps(dt);
     if (count > 1) {
         const IterationLimits one = IterationLimits::controlled();
-        limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
-                                             std::max(one.iterations, count * limits.iterations));
+        const int of_all = count * limits.iterations;
+        const bool newton = m_settings.quasi_newton.hessian_cg_iterations > 0;
+        limits = IterationLimits::controlled(newton ? of_all : std::max(one.least(), of_all),
+                                             std::max(one.iterations, of_all));
     }
     return solve(boundary, dt, m_start.get(), limits, 1, state);
 }

@@ -54,6 +54,14 @@ struct StepSettings {
         settings.quasi_newton = few(iterations);
         return settings;
     }
+    /// One Newton step in each small step, found by so many conjugate-gradient iterations: for
+    /// stiff cloth, such as real cotton, that hangs or swings. On a body it is no better than
+    /// in_small_steps().
+    static StepSettings newton_in_small_steps(double rate = 120.0, int cg_iterations = 10) {
+        StepSettings settings = in_small_steps(rate, 1);
+        settings.quasi_newton.hessian_cg_iterations = cg_iterations;
+        return settings;
+    }
     /// One minimisation for each step.
     static StepSettings whole(const QuasiNewtonSettings& limits = IterationLimits::controlled()) {
         StepSettings settings;
@@ -92,7 +100,8 @@ class StepSolver {
     virtual ~StepSolver() = default;
 
     /// "quasi-newton-K" with exactly K iterations, "quasi-newton" with as many as it takes, with
-    /// "sR" for R small steps a second, and with "-bdf2" at the end if that integrates; "reference"
+    /// "sR" for R small steps a second, "-cgK" with K iterations of conjugate gradients with the
+    /// Hessian in each, and with "-bdf2" at the end if that integrates; "reference"
     /// of Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with
     /// a tolerance, "+KsR" with small steps.
     std::string name() const;

@@ -39,8 +39,8 @@ TEST(SolverFactory, PhysicalSolversAreWhatTheirNamesSay) {
     const FreeSheet scene;
     for (const std::string name :
          {"bullet", "bullet-fine", "bullet-50", "quasi-newton-1", "quasi-newton-10", "quasi-newton",
-          "quasi-newton-3x4", "quasi-newton-3s120", "quasi-newton-3s120-bdf2", "xpbd-1", "xpbd-20",
-          "xpbd-100"})
+          "quasi-newton-3x4", "quasi-newton-3s120", "quasi-newton-3s120-bdf2",
+          "quasi-newton-1s120-cg10", "quasi-newton-2s60-cg5-bdf2", "xpbd-1", "xpbd-20", "xpbd-100"})
         EXPECT_EQ(make_solver(name, scene, {})->name(), name);
 }
 

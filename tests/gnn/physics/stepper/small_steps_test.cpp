@@ -268,6 +268,8 @@ TEST_F(SmallSteps, StandInTheName) {
     EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton-5s60-bdf2");
     settings.step = StepSettings::whole();
     EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton");
+    settings.step = StepSettings::newton_in_small_steps(240.0, 20);
+    EXPECT_EQ(ClothStepper(m_hung, settings).name(), "quasi-newton-1s240-cg20");
     const auto start = std::make_shared<Uniform>(Vec3::Zero());
     EXPECT_EQ(ClothStepper(m_hung, {}, start).name(), "uniform+3s120");
     EXPECT_EQ(ClothStepper(m_hung, small(2, 3), start).name(), "uniform+3s60");
