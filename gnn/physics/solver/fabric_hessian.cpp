@@ -47,6 +47,7 @@ FabricHessian<Real>::FabricHessian(const Garment& garment, const QuasiNewtonSyst
     add_faces(garment, system.row_of());
     add_bending(garment, system.row_of());
     m_blocks.resize(numbers * m_column.size());
+    m_own.resize(numbers * system.free().size());
     m_deformations.resize(m_faces.size());
     m_inertia.resize(system.free().size());
 }
@@ -80,7 +81,6 @@ void FabricHessian<Real>::add_faces(const Garment& garment, const std::vector<in
     m_corner_begin.push_back(0);
     for (size_t row = 0; row < rows; ++row) {
         auto& of_row = columns[row];
-        of_row.push_back(static_cast<int>(row));
         std::sort(of_row.begin(), of_row.end());
         of_row.erase(std::unique(of_row.begin(), of_row.end()), of_row.end());
         const auto place = [&of_row](int column) {
@@ -94,7 +94,6 @@ void FabricHessian<Real>::add_faces(const Garment& garment, const std::vector<in
             m_corners.push_back(corner);
         }
         m_corner_begin.push_back(m_corners.size());
-        m_diagonal.push_back(m_column.size() + static_cast<size_t>(place(static_cast<int>(row))));
         m_column.insert(m_column.end(), of_row.begin(), of_row.end());
         m_row_begin.push_back(m_column.size());
     }
@@ -105,6 +104,7 @@ template <class Real>
 void FabricHessian<Real>::add_bending(const Garment& garment, const std::vector<int>& row_of) {
     const size_t rows = m_row_begin.size() - 1;
     std::vector<std::map<int, double>> bending(rows);
+    m_own_bending.assign(rows, Real(0));
     for (const Hinge& hinge : garment.hinges()) {
         const std::array<double, 4> c = lift(garment.rest().vertices, hinge);
         const double stiffness = hinge_stiffness(garment, hinge);
@@ -112,8 +112,12 @@ void FabricHessian<Real>::add_bending(const Garment& garment, const std::vector<
             for (size_t j = 0; j < 4; ++j) {
                 const int row = row_of[static_cast<size_t>(hinge[i])];
                 const int column = row_of[static_cast<size_t>(hinge[j])];
-                if (row >= 0 && column >= 0)
-                    bending[static_cast<size_t>(row)][column] += stiffness * c[i] * c[j];
+                if (row < 0 || i == j) continue;
+                const double number = stiffness * c[i] * c[j];
+                if (column >= 0)
+                    bending[static_cast<size_t>(row)][column] += number;
+                else
+                    m_own_bending[static_cast<size_t>(row)] -= static_cast<Real>(number);
             }
     }
     m_far_begin.push_back(0);
@@ -166,11 +170,11 @@ void FabricHessian<Real>::linearise_faces(size_t half, const Points& x) {
     }
 }
 
-/// That of corners i and j of a face: the forces on i where j moves.
+/// That of corners i and j of a face: minus the forces on i where j moves.
 template <class Real>
 void FabricHessian<Real>::add_block(const Face& face, const Deformation& at, int i, int j,
-                                    Real* block) const {
-    const auto area = static_cast<Real>(face.rest.area);
+                                    Real sign, Real* block) const {
+    const Real area = sign * static_cast<Real>(face.rest.area);
     const Real mu = area * static_cast<Real>(m_fabric.mu);
     const Real lambda = area * static_cast<Real>(m_fabric.lambda);
     const Real* const g = face.gradient[i];
@@ -189,38 +193,44 @@ void FabricHessian<Real>::add_block(const Face& face, const Deformation& at, int
 
 template <class Real>
 void FabricHessian<Real>::linearise_row(size_t row) {
-    const auto set = [this](size_t c, Real value) {
-        Real* const block = m_blocks.data() + numbers * c;
+    const auto set = [](Real* block, Real value) {
         store<Real>(block, Lanes<Real>{value, 0, 0, 0});
         store<Real>(block + 4, Lanes<Real>{0, value, 0, 0});
         store<Real>(block + 8, Lanes<Real>{0, 0, value, 0});
     };
-    const size_t begin = m_row_begin[row], diagonal = m_diagonal[row];
-    for (size_t c = begin; c < m_row_begin[row + 1]; ++c) set(c, m_bending[c]);
-    set(diagonal, m_bending[diagonal] + m_inertia[row]);
+    const size_t begin = m_row_begin[row];
+    Real* const own = m_own.data() + numbers * row;
+    set(own, m_inertia[row] + m_own_bending[row]);
+    for (size_t c = begin; c < m_row_begin[row + 1]; ++c)
+        set(m_blocks.data() + numbers * c, m_bending[c]);
     for (size_t k = m_corner_begin[row]; k < m_corner_begin[row + 1]; ++k) {
         const Corner& corner = m_corners[k];
         const Face& face = m_faces[static_cast<size_t>(corner.face)];
         const Deformation& at = m_deformations[static_cast<size_t>(corner.face)];
-        add_block(face, at, corner.first, corner.first, m_blocks.data() + numbers * diagonal);
-        for (int other = 0; other < 2; ++other)
-            if (corner.column[other] >= 0)
-                add_block(face, at, corner.first, (corner.first + 1 + other) % 3,
-                          m_blocks.data() +
-                              numbers * (begin + static_cast<size_t>(corner.column[other])));
+        for (int other = 0; other < 2; ++other) {
+            const int column = corner.column[other], j = (corner.first + 1 + other) % 3;
+            if (column < 0)
+                add_block(face, at, corner.first, j, Real(-1), own);
+            else
+                add_block(face, at, corner.first, j, Real(1),
+                          m_blocks.data() + numbers * (begin + static_cast<size_t>(column)));
+        }
     }
 }
 
 template <class Real>
 Lanes<Real> FabricHessian<Real>::product(size_t row, const Real* direction) const {
-    Lanes<Real> sum = {};
+    const auto times = [](const Real* block, const Lanes<Real>& d) -> Lanes<Real> {
+        return load(block) * d[0] + load(block + 4) * d[1] + load(block + 8) * d[2];
+    };
+    const Lanes<Real> own = load(direction + 4 * row);
+    Lanes<Real> sum = times(m_own.data() + numbers * row, own);
     for (size_t c = m_row_begin[row]; c < m_row_begin[row + 1]; ++c) {
-        const Real* const d = direction + 4 * m_column[c];
-        const Real* const block = m_blocks.data() + numbers * c;
-        sum += load(block) * d[0] + load(block + 4) * d[1] + load(block + 8) * d[2];
+        const Lanes<Real> relative = load(direction + 4 * m_column[c]) - own;
+        sum += times(m_blocks.data() + numbers * c, relative);
     }
     for (size_t c = m_far_begin[row]; c < m_far_begin[row + 1]; ++c)
-        sum += m_far_bending[c] * load(direction + 4 * m_far_column[c]);
+        sum += m_far_bending[c] * (load(direction + 4 * m_far_column[c]) - own);
     return sum;
 }
 

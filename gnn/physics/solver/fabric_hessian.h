@@ -72,21 +72,25 @@ class FabricHessian {
 
     void add_faces(const Garment& garment, const std::vector<int>& row_of);
     void add_bending(const Garment& garment, const std::vector<int>& row_of);
-    void add_block(const Face& face, const Deformation& at, int i, int j, Real* block) const;
+    void add_block(const Face& face, const Deformation& at, int i, int j, Real sign,
+                   Real* block) const;
 
     std::vector<Face> m_faces;
     Fabric m_fabric;
     std::vector<Deformation> m_deformations;
-    std::vector<size_t> m_row_begin;     ///< n + 1: in what follows
-    std::vector<int> m_column;           ///< ascending in each row
-    std::vector<Real> m_bending;         ///< the same number on the block's diagonal (N/m)
-    std::vector<size_t> m_diagonal;      ///< n: where a row's own block is
-    std::vector<size_t> m_corner_begin;  ///< n + 1
-    std::vector<Corner> m_corners;
+    // Strain and bending leave translations alone: a row is sum_j B_ij (d_j - d_i) over the others,
+    // so that rounding of stiff blocks is no force on what only moves.
+    std::vector<size_t> m_row_begin;  ///< n + 1: in what follows
+    std::vector<int> m_column;        ///< of the others, ascending in each row
+    std::vector<Real> m_bending;      ///< the same number on the block's diagonal (N/m)
     std::vector<Real> m_blocks;       ///< columns x 12
     std::vector<size_t> m_far_begin;  ///< n + 1: rows that only bending couples
     std::vector<int> m_far_column;
-    std::vector<Real> m_far_bending;  ///< (N/m)
+    std::vector<Real> m_far_bending;     ///< (N/m)
+    std::vector<size_t> m_corner_begin;  ///< n + 1
+    std::vector<Corner> m_corners;
+    std::vector<Real> m_own;          ///< n x 12: inertia, and what couples the row to pins
+    std::vector<Real> m_own_bending;  ///< n: to pins (N/m)
     std::vector<Real> m_inertia;      ///< n (N/m)
 };
 
