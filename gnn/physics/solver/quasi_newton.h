@@ -49,8 +49,8 @@ struct QuasiNewtonSettings : IterationLimits {
     /// Affine displacements of the garment are deflated from them.
     int contact_cg_iterations = 7;
     /// Iterations of a solve with the FabricHessian of each point + contact blocks in place of P
-    /// and the history, 0 to 200; 0: none. An iteration costs five times as much, and stiff cloth,
-    /// which P holds back where it could bend, needs one or two where the history needs a hundred.
+    /// and the history, 0 to 200; 0: none. An iteration costs more, and stiff cloth, which P holds
+    /// back where it could bend, needs few where the history needs many.
     int hessian_cg_iterations = 0;
 
     QuasiNewtonSettings() = default;

@@ -55,8 +55,7 @@ struct StepSettings {
         return settings;
     }
     /// One Newton step in each small step, found by so many conjugate-gradient iterations: for
-    /// stiff cloth, such as real cotton, that hangs or swings. On a body it is no better than
-    /// in_small_steps().
+    /// stiff cloth, such as real cotton, which few iterations of the default hold back.
     static StepSettings newton_in_small_steps(double rate = 120.0, int cg_iterations = 10) {
         StepSettings settings = in_small_steps(rate, 1);
         settings.quasi_newton.hessian_cg_iterations = cg_iterations;
