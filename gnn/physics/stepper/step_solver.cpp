@@ -97,10 +97,8 @@ StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& st
     const int count = small_steps(dt);
     if (count > 1) {
         const IterationLimits one = IterationLimits::controlled();
-        const int of_all = count * limits.iterations;
-        const bool newton = m_settings.quasi_newton.hessian_cg_iterations > 0;
-        limits = IterationLimits::controlled(newton ? of_all : std::max(one.least(), of_all),
-                                             std::max(one.iterations, of_all));
+        limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
+                                             std::max(one.iterations, count * limits.iterations));
     }
     return solve(boundary, dt, m_start.get(), limits, 1, state);
 }
