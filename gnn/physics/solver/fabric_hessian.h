@@ -13,11 +13,11 @@ namespace cloth {
 /// sparse rows of 3 x 3 blocks, one for each free vertex, numbered as in a QuasiNewtonSystem:
 ///
 ///     inertia   M / dt^2
-///     strain    F dS dG + dF S+ of StrainEnergy's stress S, without its negative part: compression
-///               has negative curvature
-///     bending   that of the flat sheet, the same for all coordinates: constant (Bergou et al.
-///     2006,
-///               "A quadratic bending model for inextensible surfaces")
+///     strain    dS dG + S+ dF dF: stress S without its negative part, since compression has
+///               negative curvature
+///     bending   that of the flat sheet, the same for all coordinates, and so constant
+///
+/// Bending is that of Bergou et al. 2006, "A quadratic bending model for inextensible surfaces".
 ///
 /// A crew goes through it together:
 ///

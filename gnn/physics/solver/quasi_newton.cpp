@@ -169,14 +169,13 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
 
 void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
     m_right_side = -m_gradient;
+    m_contacts.linearise(potential, x);
     if (m_settings.hessian_cg_iterations > 0) {
-        m_contacts.linearise(potential, x);
         m_matrix.solve(potential.garment(), x, m_right_side, m_contacts,
                        m_settings.hessian_cg_iterations, m_direction);
         return;
     }
     m_history.first_loop(m_right_side);
-    m_contacts.linearise(potential, x);
     if (m_settings.contact_cg_iterations > 0 && m_contacts.active())
         m_matrix.solve(m_right_side, m_contacts, m_settings.contact_cg_iterations, m_direction);
     else

@@ -102,9 +102,9 @@ void QuasiNewtonMatrix::solve(const SupernodalCholesky<Real>& factor, DeflatedCg
 void QuasiNewtonMatrix::prepare_hessian(const Garment& garment) {
     if (m_factors.empty()) return;
     if (m_factors.front()->fast.size() > 0)
-        m_fast_hessian.hessian.emplace(garment, *m_system);
+        m_fast_hessian.prepare(garment, *m_system);
     else if (m_factors.front()->exact.size() > 0)
-        m_exact_hessian.hessian.emplace(garment, *m_system);
+        m_exact_hessian.prepare(garment, *m_system);
 }
 
 void QuasiNewtonMatrix::solve(const Garment& garment, const Points& x, const Points& b,
@@ -122,8 +122,7 @@ template <class Real>
 void QuasiNewtonMatrix::solve(const SupernodalCholesky<Real>& factor, HessianSolver<Real>& solver,
                               const Garment& garment, const Points& x, const Points& b,
                               ContactHessian& contacts, int iterations, Points& out) {
-    if (!solver.hessian || !solver.hessian->is_of(garment.fabric()))
-        solver.hessian.emplace(garment, *m_system);
+    solver.prepare(garment, *m_system);
     solver.hessian->begin_step(*m_system, m_factors.front()->dt);
     contacts.anticipate(solver.cg.start(factor, b));
     solver.cg.solve(*solver.hessian, x, contacts, iterations, out);

@@ -79,6 +79,11 @@ class QuasiNewtonMatrix {
     struct HessianSolver {
         std::optional<FabricHessian<Real>> hessian;
         HessianCg<Real> cg;
+
+        /// Built anew for another fabric only.
+        void prepare(const Garment& garment, const QuasiNewtonSystem& system) {
+            if (!hessian || !hessian->is_of(garment.fabric())) hessian.emplace(garment, system);
+        }
     };
     template <class Real>
     void solve(const SupernodalCholesky<Real>& factor, HessianSolver<Real>& solver,
