@@ -111,7 +111,7 @@ Options parse(int count, char** arguments) {
     add("--garment", garment, "NAME",
         "train on this garment alone: a name of data/assets/garments, or a file of yours");
     add("--seed", settings.seed, "S", "(1)");
-    add("--threads", settings.threads, "N", "of LibTorch (1)");
+    add("--threads", settings.threads, "N", "for the scenes of a batch, and for validation (1)");
     add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
     add("--nice", options.nice, "N", "lower priority, 0 to 19 (0)");
     add("--out", settings.out, "DIR",

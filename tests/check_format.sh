@@ -6,5 +6,5 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 arguments=(--dry-run -Werror)
 [ "${1:-}" = --fix ] && arguments=(-i)
-git ls-files -z '*.h' '*.cpp' | xargs -0 -n 50 -P "$(nproc)" clang-format-14 "${arguments[@]}"
-echo "format: $(git ls-files '*.h' '*.cpp' | wc -l) files"
+git ls-files -z '*.h' '*.cpp' '*.cu' | xargs -0 -n 50 -P "$(nproc)" clang-format-14 "${arguments[@]}"
+echo "format: $(git ls-files '*.h' '*.cpp' '*.cu' | wc -l) files"

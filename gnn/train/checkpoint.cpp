@@ -89,7 +89,7 @@ void Trainer::load(InputArchive& archive, const std::string& file) {
     for (Lane& lane : m_lanes) {
         ScenePoolState state;
         state.read(archive, key_prefix(lane.number), m_settings.pool);
-        lane.pool.set_state(state);
+        lane.pool.set_state(m_settings.recipe, state);
     }
 }
 

@@ -73,8 +73,10 @@ GraphTables::GraphTables(const ClothGraph& graph, const ModelConfig& config, tor
     std::map<std::pair<int, int>, std::shared_ptr<const MessageTable>> whole;
     for (int k = 0; k < config.steps; ++k) {
         auto& tables = edge_tables.emplace_back();
+        auto& ends = edge_levels.emplace_back();
         const int onto = config.levels(k).front();
         for (const int of : config.levels(k)) {
+            ends.emplace_back(of, onto);
             if (config.sampled_edges > 0) {
                 const std::vector<int>& sampled =
                     graph.level_sampling(of).edges[static_cast<size_t>(k)];
@@ -84,6 +86,55 @@ GraphTables::GraphTables(const ClothGraph& graph, const ModelConfig& config, tor
             auto& shared = whole[{of, onto}];  // serves every such step
             if (!shared) shared = make(of, onto, nullptr);
             tables.push_back(shared);
+        }
+    }
+}
+
+void GraphTables::join_levels(const std::vector<std::shared_ptr<const GraphTables>>& parts,
+                              RowShifts& row_shifts) {
+    std::vector<MessageTable::Shift> vertices(parts.size());
+    for (size_t k = 1; k < parts.size(); ++k)
+        vertices[k].x = vertices[k - 1].x + parts[k - 1]->level(0).nodes;
+    for (size_t number = 0; number < parts[0]->levels.size(); ++number) {
+        Level& all = levels.emplace_back();
+        std::vector<const MessageTable*> updates;
+        for (const auto& part : parts) {
+            const Level& own = part->levels[number];
+            updates.push_back(own.update.get());
+            for (const int row : own.node_of) all.node_of.push_back(row < 0 ? -1 : row + all.nodes);
+            all.nodes += own.nodes;
+            all.edges += own.edges;
+        }
+        all.update = std::make_shared<const MessageTable>(updates, vertices, row_shifts);
+        all.vertices = all.update->x_index;
+    }
+}
+
+GraphTables::GraphTables(const std::vector<std::shared_ptr<const GraphTables>>& parts,
+                         torch::Device device) {
+    RowShifts row_shifts(device);
+    join_levels(parts, row_shifts);
+    edge_levels = parts[0]->edge_levels;
+    std::map<const MessageTable*, std::shared_ptr<const MessageTable>> known;
+    for (size_t k = 0; k < edge_levels.size(); ++k) {
+        auto& tables = edge_tables.emplace_back();
+        for (size_t slot = 0; slot < edge_levels[k].size(); ++slot) {
+            auto& joined = known[parts[0]->edge_tables[k][slot].get()];  // serves several steps
+            tables.push_back(joined);
+            if (joined) continue;
+            const auto [of, onto] = edge_levels[k][slot];
+            std::vector<const MessageTable*> own;
+            std::vector<MessageTable::Shift> shifts;
+            MessageTable::Shift next;
+            for (const auto& part : parts) {
+                own.push_back(part->edge_tables[k][slot].get());
+                shifts.push_back(next);
+                next.x += part->level(of).edges;
+                next.product += part->level(of).nodes;
+                next.sum += part->level(onto).nodes;
+            }
+            joined = std::make_shared<const MessageTable>(own, shifts, row_shifts);
+            tables.back() = joined;
         }
     }
 }

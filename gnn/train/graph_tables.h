@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gnn/graph/cloth_graph.h"
@@ -27,6 +28,10 @@ struct GraphTables {
     /// @param graph  with the levels and the schedules that the configuration asks for
     GraphTables(const ClothGraph& graph, const ModelConfig& config, torch::Device device);
 
+    /// Several garments as one graph without edges between them. Its levels have no `first_edge`:
+    /// edges of a level stand one garment behind the other.
+    GraphTables(const std::vector<std::shared_ptr<const GraphTables>>& parts, torch::Device device);
+
     const Level& level(int number) const { return levels[static_cast<size_t>(number)]; }
     /// Of the level that stands at `slot` in ModelConfig::levels(step).
     const MessageTable& edge_table(int step, size_t slot) const {
@@ -35,8 +40,11 @@ struct GraphTables {
 
     std::vector<Level> levels;  ///< 0 is the mesh
     std::vector<std::vector<std::shared_ptr<const MessageTable>>> edge_tables;
+    std::vector<std::vector<std::pair<int, int>>> edge_levels;  ///< of these: from which, to which
 
  private:
+    void join_levels(const std::vector<std::shared_ptr<const GraphTables>>& parts,
+                     RowShifts& row_shifts);
     void add_level(int vertices, std::vector<int> nodes, const std::vector<int>& first_edge,
                    torch::Device device);
 };

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "gnn/train/cuda/cuda_block.h"
+
 namespace cloth {
 
 using torch::Tensor;
@@ -18,6 +20,55 @@ MessageTable::MessageTable(FusedRows fused, torch::Device device)
                     to_index(fused.product_index[1], device)},
       sum_index(to_index(fused.sum_index, device)) {
     rows = std::make_shared<const FusedRows>(std::move(fused));
+}
+
+const Tensor& RowShifts::spread(const std::vector<int>& shifts, const std::vector<int>& counts) {
+    Tensor& rows = m_known[{shifts, counts}];
+    if (rows.defined()) return rows;
+    std::vector<std::int64_t> values;
+    for (size_t k = 0; k < counts.size(); ++k)
+        values.insert(values.end(), static_cast<size_t>(counts[k]), shifts[k]);
+    rows = torch::tensor(values, torch::kInt64).to(m_device);
+    return rows;
+}
+
+MessageTable::MessageTable(const std::vector<const MessageTable*>& tables,
+                           const std::vector<Shift>& shifts, RowShifts& row_shifts) {
+    const auto join = [&](const auto& index_of, int Shift::*shift) {
+        std::vector<Tensor> parts;
+        std::vector<int> added, counts;
+        for (size_t k = 0; k < tables.size(); ++k) {
+            const Tensor& part = index_of(*tables[k]);
+            if (!part.defined()) continue;
+            parts.push_back(part);
+            added.push_back(shifts[k].*shift);
+            counts.push_back(static_cast<int>(part.size(0)));
+        }
+        return parts.empty() ? Tensor() : torch::cat(parts).add_(row_shifts.spread(added, counts));
+    };
+    x_index = join([](const MessageTable& t) -> const Tensor& { return t.x_index; }, &Shift::x);
+    for (size_t p = 0; p < 2; ++p)
+        product_index[p] =
+            join([p](const MessageTable& t) -> const Tensor& { return t.product_index[p]; },
+                 &Shift::product);
+    sum_index =
+        join([](const MessageTable& t) -> const Tensor& { return t.sum_index; }, &Shift::sum);
+    FusedRows all;
+    all.sum_scale = tables.front()->rows->sum_scale;
+    for (const MessageTable* table : tables) {
+        all.rows += table->rows->rows;
+        all.sums += table->rows->sums;
+    }
+    const auto copy = [](const Tensor& index, std::vector<int>& to) {
+        if (!index.defined() || !index.device().is_cpu()) return;
+        const auto* data = index.data_ptr<std::int64_t>();
+        to.assign(data, data + index.numel());
+    };
+    copy(x_index, all.x_index);
+    copy(product_index[0], all.product_index[0]);
+    copy(product_index[1], all.product_index[1]);
+    copy(sum_index, all.sum_index);
+    rows = std::make_shared<const FusedRows>(std::move(all));
 }
 
 Tensor mlp_tail(const MlpWeights& weights, const Tensor& first) {
@@ -64,6 +115,8 @@ FusedOutput message_op(const std::vector<Tensor>& x, const std::vector<int>& inp
                        const std::vector<Tensor>& products, const MlpWeights& weights,
                        const MessageTable& table, bool with_out) {
     const bool fits = weights.hidden.size() == 1 && weights.norm.defined();
+    if (fits && cuda_block_supports(weights.output) && cuda_block_supports(x[0]))
+        return cuda_message_block(x, inputs, products, weights, table, with_out);
     if (!fits || !fused_block_supports(weights.output) || !fused_block_supports(x[0]))
         return message_op_plain(x, inputs, products, weights, table, with_out);
     FusedWeights fused;

@@ -2,7 +2,9 @@
 
 #include <torch/torch.h>
 
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "gnn/train/fused_block.h"
@@ -17,11 +19,33 @@ struct MlpWeights {
     torch::Tensor output, output_bias, norm, norm_bias;  ///< norm undefined: no LayerNorm
 };
 
+/// A number per part, repeated for each of the part's rows: int64, on a device. The steps of a
+/// network ask for the same ones again and again.
+class RowShifts {
+ public:
+    explicit RowShifts(torch::Device device) : m_device(device) {}
+
+    const torch::Tensor& spread(const std::vector<int>& shifts, const std::vector<int>& counts);
+
+ private:
+    torch::Device m_device;
+    std::map<std::pair<std::vector<int>, std::vector<int>>, torch::Tensor> m_known;
+};
+
 /// Index tables of a message block on the device of its tensors; see FusedRows for the meaning.
 struct MessageTable {
-    explicit MessageTable(FusedRows rows, torch::Device device);
+    /// What is added to the indices of one of several tables.
+    struct Shift {
+        int x = 0, product = 0, sum = 0;
+    };
 
-    std::shared_ptr<const FusedRows> rows;
+    explicit MessageTable(FusedRows rows, torch::Device device);
+    /// Several tables one behind the other, as one. What is no index in one is none in all.
+    /// @param shifts  per table
+    MessageTable(const std::vector<const MessageTable*>& tables, const std::vector<Shift>& shifts,
+                 RowShifts& row_shifts);
+
+    std::shared_ptr<const FusedRows> rows;  ///< joined on a GPU: the numbers alone, no indices
     torch::Tensor x_index, product_index[2], sum_index;  ///< int64, undefined: row r
 };
 

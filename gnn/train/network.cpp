@@ -90,26 +90,34 @@ static FusedRows plain_rows(int count, int sums) {
     return rows;
 }
 
-const GraphTables& Network::tables_of(const ClothGraph& graph) {
-    std::unique_ptr<GraphTables>& tables = m_tables[graph.id];
-    if (tables) return *tables;
-    if (m_tables.size() > 256) {  // short-lived garments must not pile up
-        m_tables.clear();
-        return tables_of(graph);
-    }
-    tables = std::make_unique<GraphTables>(graph, m_config, m_device);
-    return *tables;
+std::shared_ptr<const GraphTables> Network::tables_of(const ClothGraph& graph) {
+    constexpr std::int64_t kept_uses = 2048;
+    if (m_tables.size() > 256)  // short-lived garments must not pile up
+        for (auto kept = m_tables.begin(); kept != m_tables.end();)
+            kept = m_uses - kept->second.last_use > kept_uses ? m_tables.erase(kept) : ++kept;
+    KeptTables& kept = m_tables[graph.id];
+    if (!kept.tables) kept.tables = std::make_shared<const GraphTables>(graph, m_config, m_device);
+    kept.last_use = ++m_uses;
+    return kept.tables;
 }
 
-Tensor Network::to_device(const Eigen::Ref<const MatrixF>& features,
-                          const FeatureStatistics& statistics) const {
+Tensor Network::to_device(const Blocks& features, const FeatureStatistics& statistics) const {
+    std::vector<Eigen::Index> first = {0};  // row of each block
+    for (const auto& block : features) first.push_back(first.back() + block.rows());
+    const Eigen::Index columns = statistics.mean.size();
     // Zero columns fill up to a multiple of 16, which the fused operation asks for.
-    const Eigen::Index padded = (features.cols() + 15) / 16 * 16;
-    Tensor rows = torch::zeros({features.rows(), padded}, torch::kFloat32);
-    Eigen::Map<MatrixF> map(rows.data_ptr<float>(), features.rows(), padded);
-    map.leftCols(features.cols()) =
-        (features.rowwise() - statistics.mean.transpose()).array().rowwise() /
-        statistics.deviation.transpose().array();
+    const Eigen::Index padded = (columns + 15) / 16 * 16;
+    Tensor rows = torch::empty({first.back(), padded}, torch::kFloat32);
+    Eigen::Map<MatrixF> map(rows.data_ptr<float>(), first.back(), padded);
+    const int count = static_cast<int>(features.size());
+#pragma omp parallel for schedule(dynamic, 1) num_threads(m_threads) if (m_threads > 1 && count > 1)
+    for (int k = 0; k < count; ++k) {
+        const auto& block = features[static_cast<size_t>(k)];
+        auto to = map.middleRows(first[static_cast<size_t>(k)], block.rows());
+        to.leftCols(columns) = (block.rowwise() - statistics.mean.transpose()).array().rowwise() /
+                               statistics.deviation.transpose().array();
+        to.rightCols(padded - columns).setZero();
+    }
     return rows.to(m_device);
 }
 
@@ -133,33 +141,43 @@ static Tensor reversed(const Tensor& world) {
     return world * torch::tensor(signs).to(world.device());
 }
 
-std::vector<Tensor> Network::encode_edges(const GraphTables& tables,
-                                          const Features& features) const {
-    std::vector<Tensor> latents(tables.levels.size());
+std::vector<Tensor> Network::encode_edges(
+    const std::vector<std::shared_ptr<const GraphTables>>& parts,
+    const std::vector<const Features*>& features) const {
+    std::vector<Tensor> latents(parts[0]->levels.size());
     for (const auto& [number, encoder] : m_edge_encoders) {
-        const GraphTables::Level& level = tables.level(number);
-        if (level.edges > 0)
+        Blocks blocks;
+        Eigen::Index edges = 0;
+        for (size_t k = 0; k < parts.size(); ++k) {
+            const GraphTables::Level& level = parts[k]->level(number);
+            blocks.emplace_back(features[k]->edge.middleRows(level.first_edge, level.edges));
+            edges += level.edges;
+        }
+        if (edges > 0)
             latents[static_cast<size_t>(number)] =
-                encode(encoder, to_device(features.edge.middleRows(level.first_edge, level.edges),
-                                          m_statistics.edge));
+                encode(encoder, to_device(blocks, m_statistics.edge));
     }
     return latents;
 }
 
-Network::World Network::encode_world(const Features& features) const {
+Network::World Network::encode_world(const std::vector<const Features*>& features) const {
     World world;
-    for (Eigen::Index i = 0; i < features.world_mask.size(); ++i)
-        if (features.world_mask[i] != 0.0f) world.vertices.push_back(static_cast<int>(i));
-    const auto count = static_cast<Eigen::Index>(world.vertices.size());
-    if (count == 0) return world;
-    MatrixF edges(count, features.world.cols()), bodies(count, features.body.cols());
-    for (Eigen::Index r = 0; r < count; ++r) {
-        edges.row(r) = features.world.row(world.vertices[static_cast<size_t>(r)]);
-        bodies.row(r) = features.body.row(world.vertices[static_cast<size_t>(r)]);
+    std::vector<MatrixF> edges, bodies;
+    int first_vertex = 0;
+    for (const Features* own : features) {
+        std::vector<int> touched;
+        for (Eigen::Index i = 0; i < own->world_mask.size(); ++i)
+            if (own->world_mask[i] != 0.0f) touched.push_back(static_cast<int>(i));
+        edges.push_back(own->world(touched, Eigen::all));
+        bodies.push_back(own->body(touched, Eigen::all));
+        for (const int vertex : touched) world.vertices.push_back(first_vertex + vertex);
+        first_vertex += static_cast<int>(own->world_mask.size());
     }
-    const Tensor edge_features = to_device(edges, m_statistics.world);
+    if (world.vertices.empty()) return world;
+    const Tensor edge_features = to_device({edges.begin(), edges.end()}, m_statistics.world);
     world.edges = encode(m_world_encoder, edge_features);
-    world.bodies = encode(m_body_encoder, to_device(bodies, m_statistics.body));
+    world.bodies =
+        encode(m_body_encoder, to_device({bodies.begin(), bodies.end()}, m_statistics.body));
     if (m_config.body_updates)
         world.reverse_edges = encode(m_world_encoder, reversed(edge_features));
     return world;
@@ -239,12 +257,25 @@ FusedOutput Network::send_edges(const GraphTables& tables, int k, size_t slot, c
 }
 
 Tensor Network::forward(const ClothGraph& graph, const Features& features) {
-    if (static_cast<int>(graph.coarse.size()) != coarsest_level(m_config.level_schedule))
-        throw ArgumentError("graph", "has other levels than the network",
-                            "build it with config().graph_settings()");
-    const GraphTables& tables = tables_of(graph);
-    Tensor nodes = encode(m_node_encoder, to_device(features.node, m_statistics.node));
-    std::vector<Tensor> edges = encode_edges(tables, features);
+    return forward(std::vector<const ClothGraph*>{&graph}, {&features});
+}
+
+Tensor Network::forward(const std::vector<const ClothGraph*>& graphs,
+                        const std::vector<const Features*>& features) {
+    std::vector<std::shared_ptr<const GraphTables>> parts;
+    Blocks node_features;
+    for (size_t k = 0; k < graphs.size(); ++k) {
+        if (static_cast<int>(graphs[k]->coarse.size()) != coarsest_level(m_config.level_schedule))
+            throw ArgumentError("graph", "has other levels than the network",
+                                "build it with config().graph_settings()");
+        parts.push_back(tables_of(*graphs[k]));
+        node_features.emplace_back(features[k]->node);
+    }
+    const auto joined =
+        parts.size() == 1 ? parts[0] : std::make_shared<const GraphTables>(parts, m_device);
+    const GraphTables& tables = *joined;
+    Tensor nodes = encode(m_node_encoder, to_device(node_features, m_statistics.node));
+    std::vector<Tensor> edges = encode_edges(parts, features);
     World world = encode_world(features);
     std::map<int, WorldTables> world_tables_of;
     for (int k = 0; k < m_config.steps; ++k) {

@@ -39,12 +39,20 @@ class Network {
     /// would have. The same function, slower.
     void use_plain_operations() { m_message_op = message_op_plain; }
 
+    /// Threads that copy the features of a batch (1).
+    void set_threads(int threads) { m_threads = threads; }
+
     void set_statistics(const NetworkStatistics& statistics);
     const NetworkStatistics& statistics() const { return m_statistics; }
 
     /// Scaled accelerations (|V| x 3, float32, on the network's device), with gradient.
     /// @throws ArgumentError if the graph was not built with config().graph_settings()
     torch::Tensor forward(const ClothGraph& graph, const Features& features);
+    /// Several garments at once, as a GPU needs it to be busy: the rows of one behind those of the
+    /// other, each as it would be alone.
+    /// @param graphs, features  one or more, of equal number
+    torch::Tensor forward(const std::vector<const ClothGraph*>& graphs,
+                          const std::vector<const Features*>& features);
 
     Weights export_weights() const;
     /// @throws ArgumentError if the weights are of another configuration
@@ -53,17 +61,22 @@ class Network {
  private:
     struct Step;
     struct World;
+    struct KeptTables {
+        std::shared_ptr<const GraphTables> tables;
+        std::int64_t last_use = 0;
+    };
     struct WorldTables;
 
     void bind_parameters();
     MlpWeights bind_mlp(const std::string& name, const std::vector<std::string>& inputs) const;
-    const GraphTables& tables_of(const ClothGraph& graph);
-    torch::Tensor to_device(const Eigen::Ref<const MatrixF>& features,
-                            const FeatureStatistics& statistics) const;
+    std::shared_ptr<const GraphTables> tables_of(const ClothGraph& graph);
+    using Blocks = std::vector<Eigen::Ref<const MatrixF>>;  ///< of rows
+    torch::Tensor to_device(const Blocks& features, const FeatureStatistics& statistics) const;
     torch::Tensor encode(const MlpWeights& weights, const torch::Tensor& features) const;
-    std::vector<torch::Tensor> encode_edges(const GraphTables& tables,
-                                            const Features& features) const;
-    World encode_world(const Features& features) const;
+    std::vector<torch::Tensor> encode_edges(
+        const std::vector<std::shared_ptr<const GraphTables>>& parts,
+        const std::vector<const Features*>& features) const;
+    World encode_world(const std::vector<const Features*>& features) const;
     WorldTables world_tables(const GraphTables& tables, const World& world, int level) const;
     FusedOutput send_edges(const GraphTables& tables, int k, size_t slot,
                            const torch::Tensor& nodes, const torch::Tensor& edges) const;
@@ -78,7 +91,9 @@ class Network {
     MlpWeights m_node_encoder, m_world_encoder, m_body_encoder, m_decoder;
     std::map<int, MlpWeights> m_edge_encoders;  ///< per level in use
     std::vector<Step> m_steps;
-    std::map<std::uint64_t, std::unique_ptr<GraphTables>> m_tables;
+    std::map<std::uint64_t, KeptTables> m_tables;  ///< by ClothGraph::id
+    std::int64_t m_uses = 0;
+    int m_threads = 1;
 };
 
 }  // namespace cloth

@@ -1,5 +1,7 @@
 #include "gnn/train/scene_pool.h"
 
+#include <omp.h>
+
 #include <sstream>
 
 #include "gnn/train/archive_tensors.h"
@@ -9,6 +11,9 @@ namespace cloth {
 void ScenePoolState::write(torch::serialize::OutputArchive& archive,
                            const std::string& prefix) const {
     archive.write(prefix + "random", c10::IValue(random));
+    archive.write(prefix + "spare.seed", torch::tensor(static_cast<std::int64_t>(spare_seed)));
+    archive.write(prefix + "spare.contact_weight",
+                  torch::tensor(spare_contact_weight, torch::kFloat64));
     for (size_t slot = 0; slot < scenes.size(); ++slot) {
         const std::string key = prefix + "scene" + std::to_string(slot);
         const Scene& scene = scenes[slot];
@@ -25,6 +30,9 @@ void ScenePoolState::read(torch::serialize::InputArchive& archive, const std::st
     c10::IValue text;
     archive.read(prefix + "random", text);
     random = text.toStringRef();
+    spare_seed = static_cast<std::uint64_t>(
+        read_tensor(archive, prefix + "spare.seed").item<std::int64_t>());
+    spare_contact_weight = read_tensor(archive, prefix + "spare.contact_weight").item<double>();
     scenes.resize(static_cast<size_t>(size));
     for (size_t slot = 0; slot < scenes.size(); ++slot) {
         const std::string key = prefix + "scene" + std::to_string(slot);
@@ -38,28 +46,43 @@ void ScenePoolState::read(torch::serialize::InputArchive& archive, const std::st
     }
 }
 
-ScenePool::ScenePool(const SceneFactory& factory, int size, std::uint64_t seed)
-    : m_factory(factory), m_size(size), m_random(seed) {
+ScenePool::ScenePool(const SceneFactory& factory, int size, std::uint64_t seed, bool in_background)
+    : m_factory(factory), m_size(size), m_in_background(in_background), m_random(seed) {
 }
 
-std::unique_ptr<TrainingScene> ScenePool::make(const Recipe& recipe, double progress) {
-    auto scene = m_factory.make(m_random.bits());
-    scene->warm_up(recipe.heal_iterations, recipe.contact_weight(progress));
+static std::unique_ptr<TrainingScene> make_warm(const SceneFactory& factory, std::uint64_t seed,
+                                                int iterations, double contact_weight) {
+    auto scene = factory.make(seed);
+    scene->warm_up(iterations, contact_weight);
     return scene;
 }
 
+void ScenePool::order_spare(const Recipe& recipe, std::uint64_t seed, double contact_weight) {
+    m_spare.seed = seed;
+    m_spare.contact_weight = contact_weight;
+    const int iterations = recipe.heal_iterations;
+    m_spare.scene = std::async(
+        m_in_background ? std::launch::async : std::launch::deferred,
+        [&factory = m_factory, seed, iterations, contact_weight, own_thread = m_in_background] {
+            if (own_thread) omp_set_num_threads(1);
+            return make_warm(factory, seed, iterations, contact_weight);
+        });
+}
+
 void ScenePool::fill(const Recipe& recipe, const std::atomic<bool>& stop,
-                     const std::function<void(const TrainingScene&)>& made) {
+                     const std::function<void()>& made) {
     m_scenes.clear();
     for (int slot = 0; slot < m_size; ++slot) {
         if (stop) return m_scenes.clear();
-        auto scene = make(recipe, 0.0);
+        auto scene = make_warm(m_factory, m_random.bits(), recipe.heal_iterations,
+                               recipe.contact_weight(0.0));
         // Ages are spread out, or all scenes would be replaced at the same time.
         scene->age = m_random.below(scene->parts().life / 2 + 1);
         scene->prepare(recipe.contact_weight(0.0));
-        made(*scene);
         m_scenes.push_back(std::move(scene));
+        made();
     }
+    order_spare(recipe, m_random.bits(), recipe.contact_weight(0.0));
 }
 
 TrainingScene& ScenePool::draw() {
@@ -68,7 +91,8 @@ TrainingScene& ScenePool::draw() {
 }
 
 void ScenePool::replace_drawn(const Recipe& recipe, double progress) {
-    m_scenes[m_slot] = make(recipe, progress);
+    m_scenes[m_slot] = m_spare.scene.get();
+    order_spare(recipe, m_random.bits(), recipe.contact_weight(progress));
 }
 
 ScenePoolState ScenePool::state() const {
@@ -78,10 +102,12 @@ ScenePoolState ScenePool::state() const {
     all.random = random.str();
     for (const auto& scene : m_scenes)
         all.scenes.push_back({scene->parts().seed, scene->age, scene->state});
+    all.spare_seed = m_spare.seed;
+    all.spare_contact_weight = m_spare.contact_weight;
     return all;
 }
 
-void ScenePool::set_state(const ScenePoolState& state) {
+void ScenePool::set_state(const Recipe& recipe, const ScenePoolState& state) {
     std::istringstream(state.random) >> m_random.engine();
     m_scenes.clear();
     for (const ScenePoolState::Scene& kept : state.scenes) {
@@ -90,6 +116,7 @@ void ScenePool::set_state(const ScenePoolState& state) {
         scene->state = kept.state;
         m_scenes.push_back(std::move(scene));
     }
+    order_spare(recipe, state.spare_seed, state.spare_contact_weight);
 }
 
 }  // namespace cloth

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <ctime>
+#include <exception>
 #include <filesystem>
 #include <utility>
 
@@ -45,6 +46,7 @@ static TrainerSettings checked(TrainerSettings settings, const ProcessGroup& gro
     check("validation_share", settings.validation_share, 0.0, 1.0);
     check("save_every", settings.save_every, 0.0, 1e4);
     check("freeze_statistics", static_cast<double>(settings.freeze_statistics), 0.0, 1e9);
+    settings.at_once |= settings.device != "cpu";
     settings.recipe.check();
     settings.scenes.skinned = settings.recipe.skinned;
     settings.scenes.check();
@@ -53,7 +55,7 @@ static TrainerSettings checked(TrainerSettings settings, const ProcessGroup& gro
     settings.rollouts.check();
     if (settings.references.empty()) settings.references = settings.out + "/references";
     std::filesystem::create_directories(settings.out);
-    torch::set_num_threads(settings.threads);
+    torch::set_num_threads(1);
     at::globalContext().setFlushDenormal(true);
     return settings;
 }
@@ -62,7 +64,8 @@ Trainer::Lane::Lane(int index, const SceneFactory& factory, const TrainerSetting
     : number(index),
       // 2^64 over the golden ratio: seeds of lanes are far from those of trainings
       pool(factory, settings.pool,
-           settings.seed + 0x9E3779B97F4A7C15u * static_cast<std::uint64_t>(index)) {
+           settings.seed + 0x9E3779B97F4A7C15u * static_cast<std::uint64_t>(index),
+           settings.threads > 1) {
 }
 
 Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
@@ -79,6 +82,7 @@ Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
         m_lanes.emplace_back(k, m_factory, m_settings);
     if (!m_settings.start_weights.empty())
         m_network.import_weights(Weights::load(m_settings.start_weights));
+    m_network.set_threads(m_settings.threads);
 }
 
 Trainer::~Trainer() = default;
@@ -101,14 +105,17 @@ bool Trainer::is_filled() const {
 }
 
 void Trainer::fill_pools(const std::atomic<bool>& stop) {
-    int made = 0;
-    const auto count = [&](const TrainingScene& scene) {
-        m_own_statistics.add(scene.features());
+    std::atomic<int> made{0};
+    const auto tell = [&] {
+        const int count = ++made;
         if (m_group.is_first())
-            std::fprintf(stderr, "\rmaking scenes %d/%zu", ++made,
+            std::fprintf(stderr, "\rmaking scenes %d/%zu", count,
                          m_lanes.size() * static_cast<size_t>(m_settings.pool));
     };
-    for (Lane& lane : m_lanes) lane.pool.fill(m_settings.recipe, stop, count);
+    for_each_lane(&TrainingSums::prepare_seconds,
+                  [&](Lane& lane) { lane.pool.fill(m_settings.recipe, stop, tell); });
+    for (const Lane& lane : m_lanes)
+        for (const auto& scene : lane.pool.scenes()) m_own_statistics.add(scene->features());
     if (m_group.is_first()) std::fprintf(stderr, "\n");
     share_statistics();
 }
@@ -139,58 +146,126 @@ void Trainer::begin(Lane& lane) {
     add_noise(lane.scene->state, m_settings.recipe.noise, m_settings.model.dt, lane.pool.random());
 }
 
-void Trainer::prepare(Lane& lane) {
+/// Work on the scenes alone, by as many threads as there are; each scene's is done by one.
+/// @param seconds  of processor that it takes
+void Trainer::for_each_lane(double TrainingSums::*seconds, const std::function<void(Lane&)>& work) {
     const double start = cpu_seconds();
-    lane.scene->prepare(m_settings.recipe.contact_weight(progress()));
-    m_sums.prepare_seconds += cpu_seconds() - start;
-    if (m_iteration < m_settings.freeze_statistics) m_own_statistics.add(lane.scene->features());
+    std::exception_ptr failure;
+    const int lanes = static_cast<int>(m_lanes.size());
+    const int threads = std::min(m_settings.threads, lanes);
+#pragma omp parallel for schedule(dynamic, 1) num_threads(threads) if (threads > 1)
+    for (int k = 0; k < lanes; ++k) {
+        try {
+            work(m_lanes[static_cast<size_t>(k)]);
+        } catch (...) {
+#pragma omp critical(trainer_failure)
+            failure = std::current_exception();
+        }
+    }
+    m_sums.*seconds += cpu_seconds() - start;
+    if (failure) std::rethrow_exception(failure);
 }
 
-/// Leaves the gradient of the lane's loss in that of the parameters. False: it is not finite.
-bool Trainer::differentiate(Lane& lane) {
+/// The target of the lane's prediction, and its loss. False: the loss is not finite.
+bool Trainer::judge(Lane& lane) {
     const Recipe& recipe = m_settings.recipe;
     TrainingScene& scene = *lane.scene;
-    double start = cpu_seconds();
-    m_network.parameters().gradient().zero_();
-    const Tensor output = m_network.forward(scene.graph(), scene.features());
-    lane.prediction = to_positions(scene, output);
     if (!lane.prediction.allFinite()) return false;
     const Features& features = scene.features();
-    LossProblem problem{&scene.potential(),    &scene.laplacian(), &scene.boundary(),
-                        &features.base,        &lane.target,       features.scale,
-                        recipe.position_weight};
-    m_sums.network_seconds += cpu_seconds() - start;
-    start = cpu_seconds();
+    const LossProblem problem{&scene.potential(),    &scene.laplacian(), &scene.boundary(),
+                              &features.base,        &lane.target,       features.scale,
+                              recipe.position_weight};
     const bool from_base =
         scene.potential().value(features.base) <= scene.potential().value(lane.prediction);
     lane.target = from_base ? features.base : lane.prediction;
     scene.refine(lane.target, recipe.target_iterations);
     Points judged = lane.prediction;
     if (recipe.loss_iterations > 0) scene.refine(judged, recipe.loss_iterations);
-    m_sums.solver_seconds += cpu_seconds() - start;
     evaluate_loss(recipe.loss, problem, judged, lane.loss);
-    if (!std::isfinite(lane.loss.value) || !lane.loss.gradient.allFinite()) return false;
-    const MatrixF gradient = (features.scale * lane.loss.gradient).cast<float>();
-    const Tensor seed =
-        torch::from_blob(const_cast<float*>(gradient.data()), {gradient.rows(), 3}, torch::kFloat32)
-            .to(m_device);
+    return std::isfinite(lane.loss.value) && lane.loss.gradient.allFinite();
+}
+
+/// The gradient of the lane's loss by the network's output; zero where it is not sound.
+Tensor Trainer::seed_of(const Lane& lane) const {
+    const Features& features = lane.scene->features();
+    Tensor seed = torch::zeros({features.base.rows(), 3}, torch::kFloat32);
+    if (lane.sound)
+        Eigen::Map<MatrixF>(seed.data_ptr<float>(), features.base.rows(), 3) =
+            (features.scale * lane.loss.gradient).cast<float>();
+    return seed;
+}
+
+/// Leaves the gradient of the lane's loss in that of the parameters. False: it is not finite.
+bool Trainer::differentiate(Lane& lane) {
+    double start = cpu_seconds();
+    m_network.parameters().gradient().zero_();
+    const Tensor output = m_network.forward(lane.scene->graph(), lane.scene->features());
+    lane.prediction = to_positions(*lane.scene, output);
+    m_sums.network_seconds += cpu_seconds() - start;
     start = cpu_seconds();
-    output.backward(seed);
+    const bool finite = judge(lane);
+    m_sums.solver_seconds += cpu_seconds() - start;
+    if (!finite) return false;
+    start = cpu_seconds();
+    output.backward(seed_of(lane).to(m_device));
     const double norm = m_network.parameters().gradient().norm().item<double>();
     m_sums.network_seconds += cpu_seconds() - start;
     return std::isfinite(norm);
+}
+
+void Trainer::add_gradient(int lanes) {
+    const Tensor& gradient = m_network.parameters().gradient();
+    m_sum.narrow(0, 0, gradient.numel()).add_(gradient);
+    m_sum.narrow(0, gradient.numel(), 1).add_(static_cast<double>(lanes));
+}
+
+/// The same for all lanes at once: their gradients' sum.
+void Trainer::differentiate_at_once() {
+    std::vector<const ClothGraph*> graphs;
+    std::vector<const Features*> features;
+    std::vector<Lane*> lanes;
+    for (Lane& lane : m_lanes) {
+        if (!lane.sound) continue;
+        lanes.push_back(&lane);
+        graphs.push_back(&lane.scene->graph());
+        features.push_back(&lane.scene->features());
+    }
+    if (lanes.empty()) return;
+    double start = cpu_seconds();
+    m_network.parameters().gradient().zero_();
+    const Tensor outputs = m_network.forward(graphs, features);
+    const Tensor on_cpu = outputs.detach().to(torch::kCPU);
+    std::int64_t row = 0;
+    for (Lane* lane : lanes) {
+        const std::int64_t rows = lane->scene->graph().vertex_count;
+        lane->prediction = to_positions(*lane->scene, on_cpu.narrow(0, row, rows));
+        row += rows;
+    }
+    m_sums.network_seconds += cpu_seconds() - start;
+    for_each_lane(&TrainingSums::solver_seconds,
+                  [this](Lane& lane) { lane.sound = lane.sound && judge(lane); });
+    start = cpu_seconds();
+    std::vector<Tensor> seeds;
+    for (const Lane* lane : lanes) seeds.push_back(seed_of(*lane));
+    outputs.backward(torch::cat(seeds).to(m_device));
+    const auto sound =
+        std::count_if(lanes.begin(), lanes.end(), [](const Lane* lane) { return lane->sound; });
+    const bool finite = std::isfinite(m_network.parameters().gradient().norm().item<double>());
+    if (finite) add_gradient(static_cast<int>(sound));  // else the iteration is lost
+    m_sums.network_seconds += cpu_seconds() - start;
 }
 
 /// A step along the mean gradient of all sound lanes, of all processes.
 void Trainer::step_together() {
     Parameters& parameters = m_network.parameters();
     m_sum.zero_();
-    for (Lane& lane : m_lanes) {
-        if (lane.sound) lane.sound = differentiate(lane);
-        if (!lane.sound) continue;
-        m_sum.narrow(0, 0, parameters.count()).add_(parameters.gradient());
-        m_sum.narrow(0, parameters.count(), 1).add_(1.0);
-    }
+    if (m_settings.at_once)
+        differentiate_at_once();
+    else
+        for (Lane& lane : m_lanes) {
+            if (lane.sound) lane.sound = differentiate(lane);
+            if (lane.sound) add_gradient(1);
+        }
     m_group.sum(m_sum);
     const double sound = m_sum[parameters.count()].item<double>();
     if (sound == 0.0) return;
@@ -212,16 +287,19 @@ bool Trainer::move_on(Lane& lane) {
     return lane.scene->advance(refined);
 }
 
-void Trainer::kick_some(Lane& lane) {
+bool Trainer::kick_some(Lane& lane) {
     const KickSettings& kicks = m_settings.recipe.kicks;
-    if (kicks.share == 0.0 || !lane.pool.random().chance(kicks.share)) return;
+    if (kicks.share == 0.0 || !lane.pool.random().chance(kicks.share)) return false;
     kick(lane.scene->garment(), kicks, lane.pool.random(), lane.scene->state);
-    ++m_sums.kicks;
+    return true;
 }
 
 void Trainer::end(Lane& lane) {
     const Recipe& recipe = m_settings.recipe;
     TrainingScene& scene = *lane.scene;
+    const auto index = static_cast<int>(&lane - m_lanes.data());
+    lane.has_terms = (m_sums.count + index) % 10 == 0 && lane.prediction.allFinite();
+    if (lane.has_terms) lane.terms = scene.potential().terms(lane.prediction);
     if (recipe.noise > 0.0) {  // the scene itself goes on as the solver moves it, without noise
         scene.state = lane.kept;
         scene.age = lane.kept_age;
@@ -232,34 +310,42 @@ void Trainer::end(Lane& lane) {
     } else {
         lane.sound = lane.sound && move_on(lane);
     }
-    if (lane.sound) kick_some(lane);
+    lane.kicked = lane.sound && kick_some(lane);
+    if (!lane.sound || scene.age > scene.parts().life) lane.pool.replace_drawn(recipe, progress());
+}
+
+/// What the lane adds to the next row of metrics.csv.
+void Trainer::count(const Lane& lane) {
     m_sums.loss += lane.loss.value;
     m_sums.gaps.push_back(lane.loss.gap);
     m_sums.errors.push_back(lane.loss.error);
     ++m_sums.count;
-    if (m_sums.count % 10 == 1 && lane.prediction.allFinite())
-        m_sums.add(scene.potential().terms(lane.prediction));
-    if (!lane.sound || scene.age > scene.parts().life) {
-        m_sums.resets += lane.sound ? 0 : 1;
-        lane.pool.replace_drawn(recipe, progress());
-    }
+    if (lane.has_terms) m_sums.add(lane.terms);
+    m_sums.kicks += lane.kicked ? 1 : 0;
+    m_sums.resets += lane.sound ? 0 : 1;
 }
 
 double Trainer::iterate() {
     if (!is_filled()) fill_pools(std::atomic<bool>{false});
     for (Lane& lane : m_lanes) begin(lane);
-    const int steps = m_settings.recipe.rollout(m_iteration);
+    const Recipe& recipe = m_settings.recipe;
+    const int steps = recipe.rollout(m_iteration);
     for (int k = 0; k < steps; ++k) {
-        for (Lane& lane : m_lanes) {
+        for_each_lane(&TrainingSums::prepare_seconds, [&](Lane& lane) {
             if (k > 0 && lane.sound) lane.sound = lane.scene->advance(lane.prediction);
-            if (lane.sound) prepare(lane);
+            if (lane.sound) lane.scene->prepare(recipe.contact_weight(progress()));
+        });
+        if (m_iteration < m_settings.freeze_statistics && m_settings.start_weights.empty()) {
+            for (const Lane& lane : m_lanes)
+                if (lane.sound) m_own_statistics.add(lane.scene->features());
+            share_statistics();
         }
-        if (m_iteration < m_settings.freeze_statistics) share_statistics();
         step_together();
     }
     double loss = 0.0;
-    for (Lane& lane : m_lanes) {
-        end(lane);
+    for_each_lane(&TrainingSums::solver_seconds, [this](Lane& lane) { end(lane); });
+    for (const Lane& lane : m_lanes) {
+        count(lane);
         loss += lane.loss.value;
     }
     ++m_iteration;

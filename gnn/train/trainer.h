@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,13 +27,16 @@ struct TrainerSettings {
     ValidationSettings validation;
     RolloutSettings rollouts;    ///< of the validation; its `threads` are those here
     std::string device = "cpu";  ///< cpu or cuda
-    int threads = 1;             ///< of LibTorch and of the validation, 1 to 256
+    int threads = 1;             ///< for the scenes of a batch and for the validation, 1 to 256
     std::uint64_t seed = 1;
     std::int64_t iterations = 0;  ///< end of training, 0 to 1e9; 0: as many as fit into `minutes`
     double minutes = 0.0;         ///< wall time of training, 0 to 1e6; 0: no limit
     int batch = 1;  ///< scenes of an iteration, whose mean gradient is followed: 1 to 4096, a
                     ///< multiple of the number of processes
-    int pool = 40;  ///< scenes trained on in turn, for each of the batch, 1 to 1000
+    /// The scenes of a batch pass the network at once, as they always do on a GPU: the same but for
+    /// rounding.
+    bool at_once = false;
+    int pool = 40;                  ///< scenes trained on in turn, for each of the batch, 1 to 1000
     int report_every = 100;         ///< iterations per row of metrics.csv, 1 to 1e6
     double validate_every = 10.0;   ///< minutes between validations, 0 to 1e4
     double validation_share = 0.1;  ///< of the time that they may take, 0 to 1; 0: none at all
@@ -103,7 +107,8 @@ class Trainer {
         int kept_age = 0;
         Points prediction, target;
         LossValue loss;
-        bool sound = true;
+        EnergyTerms terms;
+        bool sound = true, has_terms = false, kicked = false;
     };
 
     double progress() const;
@@ -112,14 +117,19 @@ class Trainer {
     bool is_filled() const;
     void fill_pools(const std::atomic<bool>& stop);
     void begin(Lane& lane);
-    void prepare(Lane& lane);
     void share_statistics();
+    bool judge(Lane& lane);
+    torch::Tensor seed_of(const Lane& lane) const;
     bool differentiate(Lane& lane);
+    void differentiate_at_once();
+    void add_gradient(int lanes);
     void step_together();
     bool move_on(Lane& lane);
     void end(Lane& lane);
+    void count(const Lane& lane);
     void begin_sums();
-    void kick_some(Lane& lane);
+    bool kick_some(Lane& lane);
+    void for_each_lane(double TrainingSums::*seconds, const std::function<void(Lane&)>& work);
     void report(bool validates);
     Validated validate();
     void write_row(const Validated& validated);

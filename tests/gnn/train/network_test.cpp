@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
@@ -181,6 +182,77 @@ TEST_P(EveryVariant, PredictsTheSameAfterSavingAndLoading) {
     const Eigen::Map<const MatrixF> map(expected.data_ptr<float>(), expected.size(0), 3);
     EXPECT_EQ((out - map.cast<double>()).cwiseAbs().maxCoeff(), 0.0);
     std::remove(file.c_str());
+}
+
+/// Garments of several sizes, one repeated and one with nothing near it.
+struct Batch {
+    explicit Batch(const ModelConfig& config) {
+        for (const int vertices : {70, 9, 200})
+            own_graphs.push_back(std::make_unique<ClothGraph>(
+                build_cloth_graph(Garment("sheet", make_sheet(0.3, 0.3, vertices, 3u + vertices),
+                                          Fabric::soft_cotton()),
+                                  config.graph_settings())));
+        for (const size_t k : {0, 1, 2, 0}) graphs.push_back(own_graphs[k].get());
+        for (size_t k = 0; k < graphs.size(); ++k) {
+            own_features.push_back(std::make_unique<Features>(
+                random_features(config, *graphs[k], static_cast<int>(k))));
+            features.push_back(own_features.back().get());
+            seeds.push_back(torch::randn({graphs[k]->vertex_count, 3}));
+        }
+        own_features[2]->world_mask.setZero();
+    }
+
+    std::vector<std::unique_ptr<ClothGraph>> own_graphs;
+    std::vector<std::unique_ptr<Features>> own_features;
+    std::vector<const ClothGraph*> graphs;
+    std::vector<const Features*> features;
+    std::vector<Tensor> seeds;  ///< gradients of the outputs
+};
+
+double relative(const Tensor& a, const Tensor& b) {
+    return ((a.cpu() - b.cpu()).norm() / b.cpu().norm()).item<double>();
+}
+
+TEST_P(EveryVariant, TakesABatchAsEachGarmentAlone) {
+    for (const bool plain : {false, true}) {
+        const ModelConfig config = small(GetParam());
+        const Batch batch(config);
+        Network network(config, torch::kCPU, 1);
+        if (plain) network.use_plain_operations();
+        std::vector<Tensor> alone;
+        for (size_t k = 0; k < batch.graphs.size(); ++k) {
+            alone.push_back(network.forward(*batch.graphs[k], *batch.features[k]));
+            alone.back().backward(batch.seeds[k]);
+        }
+        const Tensor sum = network.parameters().gradient().clone();
+        network.parameters().gradient().zero_();
+        const Tensor out = network.forward(batch.graphs, batch.features);
+        EXPECT_LT(relative(out, torch::cat(alone)), 1e-5);
+        out.backward(torch::cat(batch.seeds));
+        EXPECT_LT(relative(network.parameters().gradient(), sum), 1e-5);
+    }
+}
+
+TEST_P(EveryVariant, OnAGpuEqualsTheCpu) {
+    if (!torch::cuda::is_available()) GTEST_SKIP() << "no CUDA device, or LibTorch without CUDA";
+    for (const int width : {16, 32, 48}) {
+        const ModelConfig config = small(GetParam(), width);
+        const Batch batch(config);
+        Network cpu(config, torch::kCPU, 1), gpu(config, torch::kCUDA, 1);
+        for (const bool plain : {false, true}) {
+            if (plain) gpu.use_plain_operations();
+            for (Network* network : {&cpu, &gpu}) {
+                network->parameters().gradient().zero_();
+                const Tensor out = network->forward(batch.graphs, batch.features);
+                out.backward(torch::cat(batch.seeds).to(out.device()));
+            }
+            EXPECT_LT(relative(gpu.forward(batch.graphs, batch.features),
+                               cpu.forward(batch.graphs, batch.features)),
+                      1e-4);
+            EXPECT_LT(relative(gpu.parameters().gradient(), cpu.parameters().gradient()), 1e-4)
+                << "width " << width << (plain ? " plain" : "");
+        }
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,

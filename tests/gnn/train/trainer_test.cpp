@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -55,6 +56,37 @@ TEST(Trainer, GoesOnExactlyWhereItStopped) {
         all.rollout_growth = 4;
         all.heal_last = 0.0;
     });
+}
+
+TEST(Trainer, ScenesOfABatchMayBeSharedByThreads) {
+    TrainerSettings settings = tiny("one_thread", "kicks");
+    settings.batch = 3;
+    Trainer one(settings);
+    settings.out = tiny("three_threads").out;
+    settings.threads = 3;
+    Trainer three(settings);
+    for (int k = 0; k < 12; ++k) {
+        one.iterate();
+        three.iterate();
+    }
+    EXPECT_EQ(numbers(one), numbers(three));
+}
+
+TEST(Trainer, ABatchPassesTheNetworkAtOnceWithTheSameGradient) {
+    TrainerSettings settings = tiny("one_by_one", "kicks");
+    settings.batch = 3;
+    Trainer one_by_one(settings);
+    settings.out = tiny("at_once").out;
+    settings.at_once = true;
+    Trainer at_once(settings);
+    one_by_one.iterate();
+    at_once.iterate();
+    const torch::Tensor a = one_by_one.network().parameters().gradient();
+    const torch::Tensor b = at_once.network().parameters().gradient();
+    EXPECT_LT((a - b).norm().item<double>(), 1e-5 * a.norm().item<double>());
+    EXPECT_GT(a.norm().item<double>(), 0.0);
+    for (int k = 0; k < 11; ++k) at_once.iterate();
+    for (const float number : numbers(at_once)) ASSERT_TRUE(std::isfinite(number));
 }
 
 TEST(Trainer, TrainsAndResumesNetworksWithCoarseLevels) {
