@@ -170,6 +170,10 @@ double IncrementalPotential::value(const Points& x) const {
     return terms(x).total();
 }
 
+double IncrementalPotential::value_of_motion(const Points& x) const {
+    return m_gravity.value(x) + m_inertia.value(x);
+}
+
 double IncrementalPotential::value_gradient(const Points& x, Points& gradient,
                                             Points* elastic) const {
     const ElasticEnergy::Terms fabric = m_elastic.gradient(x, gradient);

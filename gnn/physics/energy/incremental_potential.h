@@ -90,6 +90,8 @@ class IncrementalPotential {
 
     EnergyTerms terms(const Points& x) const;
     double value(const Points& x) const;
+    /// Of gravity and inertia alone: value() is never less, as the other terms are never negative.
+    double value_of_motion(const Points& x) const;
     /// @param elastic  if not null, filled with elastic_gradient() at x
     double value_gradient(const Points& x, Points& gradient, Points* elastic = nullptr) const;
     /// Hessian of E (3|V| x 3|V|, both triangles), by default with each element's block made

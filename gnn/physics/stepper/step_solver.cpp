@@ -1,5 +1,6 @@
 #include "gnn/physics/stepper/step_solver.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -249,7 +250,39 @@ bool StepSolver::minimise_part(const Boundary& boundary, const SurfaceContacts& 
     if (from == Start::guess)
         at_x = choose_start(boundary, contacts, start, limits, m_last_dt, m_last, report);
     if (start && limits.iterations == 0 && !at_x) return true;  // as it was predicted
-    return descend(boundary, limits, at_x, m_last, report);
+    if (!descend(boundary, limits, at_x, m_last, report)) return false;
+    const bool few = !start && m_settings.small_step_rate > 0.0;  // iterations
+    return !few || undo_gain(boundary, contacts, limits, report);
+}
+
+/// Where a part of the cloth lands and the rest goes on, guesses are stretched more than few
+/// iterations undo. A part that ends with more energy than if all of the cloth stopped has made
+/// some. It goes on from the least energy on the way from there to its end.
+bool StepSolver::undo_gain(const Boundary& boundary, const SurfaceContacts& contacts,
+                           const IterationLimits& limits, StepReport& report) {
+    resting_guess(*m_garment, m_last, boundary, contacts, 0.0,
+                  m_potential.settings().contact_distance, m_stop);
+    if (m_energy <= m_potential.value_of_motion(m_stop)) return true;
+    const double at_stop = m_potential.value(m_stop);
+    if (m_energy <= at_stop) return true;
+    m_x = m_stop + lowest_towards_end(at_stop) * (m_x - m_stop);
+    return descend(boundary, limits, nullptr, m_last, report);
+}
+
+/// Of the way from m_stop to m_x, whose energies are `at_stop` and m_energy: by the parabola
+/// through these and the middle's. 0 to 1, no higher than at_stop.
+double StepSolver::lowest_towards_end(double at_stop) {
+    const auto energy_at = [this](double share) {
+        m_between = m_stop + share * (m_x - m_stop);
+        return m_potential.value(m_between);
+    };
+    const double at_middle = energy_at(0.5);
+    const double curvature = 2.0 * (m_energy - 2.0 * at_middle + at_stop);
+    const double slope = m_energy - at_stop - curvature;
+    const double lowest = std::min(at_stop, at_middle), share = at_middle < at_stop ? 0.5 : 0.0;
+    if (!(curvature > 0.0)) return share;
+    const double vertex = std::clamp(-0.5 * slope / curvature, 0.0, 1.0);
+    return energy_at(vertex) < lowest ? vertex : share;
 }
 
 /// m_last goes on to m_x.
@@ -361,6 +394,7 @@ bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits
         place_pins(*m_garment, boundary, m_x);
         minimum = minimise(limits, nullptr);
     }
+    m_energy = minimum.energy;
     report.iterations += minimum.iterations;
     report.residual = minimum.residual;
     report.gain = minimum.gain;

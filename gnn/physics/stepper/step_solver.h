@@ -188,6 +188,9 @@ class StepSolver {
                const std::vector<Tangle>* tangles);
     bool minimise_part(const Boundary& boundary, const SurfaceContacts& contacts, StepStart* start,
                        Start from, const IterationLimits& limits, StepReport& report);
+    bool undo_gain(const Boundary& boundary, const SurfaceContacts& contacts,
+                   const IterationLimits& limits, StepReport& report);
+    double lowest_towards_end(double at_stop);
     void accept_part();
     const PotentialValue* choose_start(const Boundary& boundary, const SurfaceContacts& contacts,
                                        StepStart* start, const IterationLimits& limits, double dt,
@@ -220,6 +223,8 @@ class StepSolver {
     double m_contact_ms = 0.0;  ///< what contact took in the last step
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
+    Points m_stop, m_between;   ///< |V| x 3 (m)
+    double m_energy = 0.0;      ///< of m_x after the last minimisation (J)
     Points m_acceleration;      ///< |V| x 3 (m/s^2): what the start adds to guesses
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
     BoundaryPart m_boundary_part;
