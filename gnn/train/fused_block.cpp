@@ -1,6 +1,6 @@
 #include "gnn/train/fused_block.h"
 
-#include "gnn/model/message_block.h"
+#include "gnn/train/message_slots.h"
 
 namespace cloth {
 
@@ -10,41 +10,13 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-// Order of the tensors in the operation's argument list.
-enum Slot {
-    x0,  // x of MessageBlockRows
-    p0 = x0 + MessageBlockWeights::max_inputs,
-    p1,
-    w10,  // w1
-    b1 = w10 + MessageBlockWeights::max_inputs,
-    w2,
-    b2,
-    w3,
-    b3,
-    gamma,
-    beta,
-    slot_count
-};
-constexpr int max_inputs = MessageBlockWeights::max_inputs;
+using namespace message_slots;
 
 /// Shape of one call: what is constant between its forward and its backward pass.
 struct Call : torch::CustomClassHolder {
     std::shared_ptr<const FusedRows> rows;
     bool with_out = false;
 };
-
-/// LibTorch's custom functions take no undefined tensors: an absent one is empty.
-bool is_absent(const Tensor& tensor) {
-    return !tensor.defined() || tensor.numel() == 0;
-}
-
-const float* data_of(const Tensor& tensor) {
-    return is_absent(tensor) ? nullptr : tensor.data_ptr<float>();
-}
-
-float* gradient_of(const Tensor& tensor) {
-    return is_absent(tensor) ? nullptr : tensor.data_ptr<float>();
-}
 
 const int* index_of(const std::vector<int>& index) {
     return index.empty() ? nullptr : index.data();
@@ -103,8 +75,8 @@ struct FusedFunction : torch::autograd::Function<FusedFunction> {
         const MessageBlockWeights weights = block_weights(tensors);
         Tensor sum = torch::zeros({tables.sums, weights.width}, tensors[w2].options());
         Tensor out = call->with_out ? tensors[x0].clone() : Tensor();
-        message_block_forward(weights, block_rows(tensors, tables), gradient_of(out),
-                              gradient_of(sum), scratch());
+        message_block_forward(weights, block_rows(tensors, tables), data_of(out), data_of(sum),
+                              scratch());
         // an output must be defined; an unwanted one is empty
         return {call->with_out ? out : torch::empty({0}, tensors[w2].options()), sum};
     }
@@ -124,17 +96,17 @@ struct FusedFunction : torch::autograd::Function<FusedFunction> {
                                                                 : torch::zeros_like(tensors[slot]);
         MessageBlockGradients to;
         for (int k = 0; k < max_inputs; ++k) {
-            to.x[k] = gradient_of(gradients[x0 + k]);
-            to.w1[k] = gradient_of(gradients[w10 + k]);
+            to.x[k] = data_of(gradients[x0 + k]);
+            to.w1[k] = data_of(gradients[w10 + k]);
         }
-        for (int k = 0; k < 2; ++k) to.p[k] = gradient_of(gradients[p0 + k]);
-        to.b1 = gradient_of(gradients[b1]);
-        to.w2 = gradient_of(gradients[w2]);
-        to.b2 = gradient_of(gradients[b2]);
-        to.w3 = gradient_of(gradients[w3]);
-        to.b3 = gradient_of(gradients[b3]);
-        to.gamma = gradient_of(gradients[gamma]);
-        to.beta = gradient_of(gradients[beta]);
+        for (int k = 0; k < 2; ++k) to.p[k] = data_of(gradients[p0 + k]);
+        to.b1 = data_of(gradients[b1]);
+        to.w2 = data_of(gradients[w2]);
+        to.b2 = data_of(gradients[b2]);
+        to.w3 = data_of(gradients[w3]);
+        to.b3 = data_of(gradients[b3]);
+        to.gamma = data_of(gradients[gamma]);
+        to.beta = data_of(gradients[beta]);
         message_block_backward(block_weights(tensors), block_rows(tensors, tables), data_of(d_out),
                                data_of(d_sum), to, scratch());
         return gradients;
@@ -151,22 +123,10 @@ bool fused_block_supports(const Tensor& latent) {
 FusedOutput fused_message_block(const std::vector<Tensor>& x, const std::vector<Tensor>& products,
                                 const FusedWeights& weights, std::shared_ptr<const FusedRows> rows,
                                 bool with_out) {
-    const Tensor absent = torch::empty({0}, weights.w2.options().requires_grad(false));
-    const auto input = [&absent](const std::vector<Tensor>& list, size_t k) {
-        return k < list.size() ? list[k] : absent;
-    };
-    const auto present = [&absent](const Tensor& tensor) {
-        return tensor.defined() ? tensor : absent;
-    };
     auto call = c10::make_intrusive<Call>();
     call->rows = std::move(rows);
     call->with_out = with_out;
-    const variable_list result =
-        FusedFunction::apply(input(x, 0), input(x, 1), input(x, 2), input(x, 3), input(products, 0),
-                             input(products, 1), weights.w1[0], present(weights.w1[1]),
-                             present(weights.w1[2]), present(weights.w1[3]), weights.b1, weights.w2,
-                             weights.b2, weights.w3, weights.b3, weights.gamma, weights.beta, call);
-    return {with_out ? result[0] : Tensor(), result[1]};
+    return message_slots::apply<FusedFunction>(x, products, weights, call);
 }
 
 }  // namespace cloth

@@ -73,10 +73,8 @@ GraphTables::GraphTables(const ClothGraph& graph, const ModelConfig& config, tor
     std::map<std::pair<int, int>, std::shared_ptr<const MessageTable>> whole;
     for (int k = 0; k < config.steps; ++k) {
         auto& tables = edge_tables.emplace_back();
-        auto& ends = edge_levels.emplace_back();
         const int onto = config.levels(k).front();
         for (const int of : config.levels(k)) {
-            ends.emplace_back(of, onto);
             if (config.sampled_edges > 0) {
                 const std::vector<int>& sampled =
                     graph.level_sampling(of).edges[static_cast<size_t>(k)];
@@ -111,23 +109,23 @@ void GraphTables::join_levels(const std::vector<std::shared_ptr<const GraphTable
 }
 
 GraphTables::GraphTables(const std::vector<std::shared_ptr<const GraphTables>>& parts,
-                         torch::Device device) {
+                         const ModelConfig& config, torch::Device device) {
     RowShifts row_shifts(device);
     join_levels(parts, row_shifts);
-    edge_levels = parts[0]->edge_levels;
     std::map<const MessageTable*, std::shared_ptr<const MessageTable>> known;
-    for (size_t k = 0; k < edge_levels.size(); ++k) {
+    for (int k = 0; k < config.steps; ++k) {
         auto& tables = edge_tables.emplace_back();
-        for (size_t slot = 0; slot < edge_levels[k].size(); ++slot) {
-            auto& joined = known[parts[0]->edge_tables[k][slot].get()];  // serves several steps
+        const std::vector<int>& of_step = config.levels(k);
+        for (size_t slot = 0; slot < of_step.size(); ++slot) {
+            auto& joined = known[&parts[0]->edge_table(k, slot)];  // serves several steps
             tables.push_back(joined);
             if (joined) continue;
-            const auto [of, onto] = edge_levels[k][slot];
+            const int of = of_step[slot], onto = of_step.front();
             std::vector<const MessageTable*> own;
             std::vector<MessageTable::Shift> shifts;
             MessageTable::Shift next;
             for (const auto& part : parts) {
-                own.push_back(part->edge_tables[k][slot].get());
+                own.push_back(&part->edge_table(k, slot));
                 shifts.push_back(next);
                 next.x += part->level(of).edges;
                 next.product += part->level(of).nodes;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "gnn/graph/cloth_graph.h"
@@ -30,7 +29,9 @@ struct GraphTables {
 
     /// Several garments as one graph without edges between them. Its levels have no `first_edge`:
     /// edges of a level stand one garment behind the other.
-    GraphTables(const std::vector<std::shared_ptr<const GraphTables>>& parts, torch::Device device);
+    /// @param parts  of one configuration
+    GraphTables(const std::vector<std::shared_ptr<const GraphTables>>& parts,
+                const ModelConfig& config, torch::Device device);
 
     const Level& level(int number) const { return levels[static_cast<size_t>(number)]; }
     /// Of the level that stands at `slot` in ModelConfig::levels(step).
@@ -40,7 +41,6 @@ struct GraphTables {
 
     std::vector<Level> levels;  ///< 0 is the mesh
     std::vector<std::vector<std::shared_ptr<const MessageTable>>> edge_tables;
-    std::vector<std::vector<std::pair<int, int>>> edge_levels;  ///< of these: from which, to which
 
  private:
     void join_levels(const std::vector<std::shared_ptr<const GraphTables>>& parts,

@@ -115,9 +115,11 @@ FusedOutput message_op(const std::vector<Tensor>& x, const std::vector<int>& inp
                        const std::vector<Tensor>& products, const MlpWeights& weights,
                        const MessageTable& table, bool with_out) {
     const bool fits = weights.hidden.size() == 1 && weights.norm.defined();
-    if (fits && cuda_block_supports(weights.output) && cuda_block_supports(x[0]))
-        return cuda_message_block(x, inputs, products, weights, table, with_out);
-    if (!fits || !fused_block_supports(weights.output) || !fused_block_supports(x[0]))
+    const auto takes = [&](const auto& supports) {
+        return fits && supports(weights.output) && supports(x[0]);
+    };
+    const bool on_gpu = takes(cuda_block_supports);
+    if (!on_gpu && !takes(fused_block_supports))
         return message_op_plain(x, inputs, products, weights, table, with_out);
     FusedWeights fused;
     for (size_t k = 0; k < x.size(); ++k)
@@ -129,7 +131,8 @@ FusedOutput message_op(const std::vector<Tensor>& x, const std::vector<int>& inp
     fused.b3 = weights.output_bias;
     fused.gamma = weights.norm;
     fused.beta = weights.norm_bias;
-    return fused_message_block(x, products, fused, table.rows, with_out);
+    return on_gpu ? cuda_message_block(x, products, fused, table, with_out)
+                  : fused_message_block(x, products, fused, table.rows, with_out);
 }
 
 }  // namespace cloth

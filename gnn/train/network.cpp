@@ -271,8 +271,9 @@ Tensor Network::forward(const std::vector<const ClothGraph*>& graphs,
         parts.push_back(tables_of(*graphs[k]));
         node_features.emplace_back(features[k]->node);
     }
-    const auto joined =
-        parts.size() == 1 ? parts[0] : std::make_shared<const GraphTables>(parts, m_device);
+    const auto joined = parts.size() == 1
+                            ? parts[0]
+                            : std::make_shared<const GraphTables>(parts, m_config, m_device);
     const GraphTables& tables = *joined;
     Tensor nodes = encode(m_node_encoder, to_device(node_features, m_statistics.node));
     std::vector<Tensor> edges = encode_edges(parts, features);

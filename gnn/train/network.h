@@ -49,7 +49,8 @@ class Network {
     /// @throws ArgumentError if the graph was not built with config().graph_settings()
     torch::Tensor forward(const ClothGraph& graph, const Features& features);
     /// Several garments at once, as a GPU needs it to be busy: the rows of one behind those of the
-    /// other, each as it would be alone.
+    /// other, each as it would be alone. A GraphBatch gives the same; its tables would be made anew
+    /// for each batch, where these are joined from those of the garments.
     /// @param graphs, features  one or more, of equal number
     torch::Tensor forward(const std::vector<const ClothGraph*>& graphs,
                           const std::vector<const Features*>& features);

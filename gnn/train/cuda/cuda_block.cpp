@@ -4,6 +4,7 @@
 #include <string>
 
 #include "gnn/train/cuda/message_kernels.h"
+#include "gnn/train/message_slots.h"
 
 namespace cloth {
 
@@ -13,28 +14,7 @@ using torch::Tensor;
 using torch::autograd::AutogradContext;
 using torch::autograd::variable_list;
 
-// Order of the tensors in the operation's argument list.
-enum Slot {
-    x0,
-    x1,
-    x2,
-    x3,
-    p0,
-    p1,
-    w10,
-    w11,
-    w12,
-    w13,
-    b1,
-    w2,
-    b2,
-    w3,
-    b3,
-    gamma,
-    beta,
-    slot_count
-};
-constexpr int max_inputs = p0 - x0;
+using namespace message_slots;
 
 /// Shape of one call: what is constant between its forward and its backward pass.
 struct Call : torch::CustomClassHolder {
@@ -46,15 +26,6 @@ struct Call : torch::CustomClassHolder {
 
 void check(int error) {
     if (error != 0) throw std::runtime_error("message block: CUDA error " + std::to_string(error));
-}
-
-/// LibTorch's custom functions take no undefined tensors: an absent one is empty.
-bool is_absent(const Tensor& tensor) {
-    return !tensor.defined() || tensor.numel() == 0;
-}
-
-float* data_of(const Tensor& tensor) {
-    return is_absent(tensor) ? nullptr : tensor.data_ptr<float>();
 }
 
 const std::int64_t* index_of(const Tensor& index) {
@@ -180,16 +151,9 @@ bool cuda_block_supports(const Tensor& latent) {
            latent.size(-1) <= 512;
 }
 
-FusedOutput cuda_message_block(const std::vector<Tensor>& x, const std::vector<int>& inputs,
-                               const std::vector<Tensor>& products, const MlpWeights& weights,
-                               const MessageTable& table, bool with_out) {
-    const Tensor absent = torch::empty({0}, weights.output.options().requires_grad(false));
-    const auto input = [&absent](const std::vector<Tensor>& list, size_t k) {
-        return k < list.size() ? list[k] : absent;
-    };
-    const auto weight = [&](size_t k) {
-        return k < x.size() ? weights.first[static_cast<size_t>(inputs[k])] : absent;
-    };
+FusedOutput cuda_message_block(const std::vector<Tensor>& x, const std::vector<Tensor>& products,
+                               const FusedWeights& weights, const MessageTable& table,
+                               bool with_out) {
     auto call = c10::make_intrusive<Call>();
     call->x_index = table.x_index;
     call->product_index[0] = table.product_index[0];
@@ -199,12 +163,7 @@ FusedOutput cuda_message_block(const std::vector<Tensor>& x, const std::vector<i
     call->sums = table.rows->sums;
     call->sum_scale = table.rows->sum_scale;
     call->with_out = with_out;
-    const variable_list result = CudaFunction::apply(
-        input(x, 0), input(x, 1), input(x, 2), input(x, 3), input(products, 0), input(products, 1),
-        weight(0), weight(1), weight(2), weight(3), weights.first_bias, weights.hidden[0],
-        weights.hidden_bias[0], weights.output, weights.output_bias, weights.norm,
-        weights.norm_bias, call);
-    return {with_out ? result[0] : Tensor(), result[1]};
+    return message_slots::apply<CudaFunction>(x, products, weights, call);
 }
 
 }  // namespace cloth

@@ -180,7 +180,7 @@ __global__ void norm_backward_kernel(Norm norm, const float* d_out, const float*
     add_columns(biases, norm.width, d_bias);
 }
 
-/// Calls `launch(std::integral_constant)` with the columns per lane that `width` needs.
+/// Calls launch.operator()<columns> with the columns per lane that `width` needs.
 template <typename Launch>
 int with_columns(std::int64_t rows, int width, const Launch& launch) {
     if (rows == 0) return 0;

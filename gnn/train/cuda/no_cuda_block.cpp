@@ -7,9 +7,8 @@ bool cuda_block_supports(const torch::Tensor&) {
     return false;
 }
 
-FusedOutput cuda_message_block(const std::vector<torch::Tensor>&, const std::vector<int>&,
-                               const std::vector<torch::Tensor>&, const MlpWeights&,
-                               const MessageTable&, bool) {
+FusedOutput cuda_message_block(const std::vector<torch::Tensor>&, const std::vector<torch::Tensor>&,
+                               const FusedWeights&, const MessageTable&, bool) {
     throw ArgumentError("message block on a GPU", "is not built", "configure with CLOTH_CUDA=ON");
 }
 
