@@ -1,5 +1,7 @@
 #include "bullet_ext/energyBalance.h"
 
+#include <BulletDynamics/Dynamics/btRigidBody.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -62,6 +64,28 @@ double brake(std::vector<EnergyBalance::Share>& shares, double surplus) {
     return surplus - taken;
 }
 
+/// Takes the same part of the motion of each body against what the cloth gives it.
+double stopPressing(std::vector<EnergyBalance::Share>& shares, double surplus) {
+    const auto pressing = [](const EnergyBalance::Share& share) -> Vec3 {
+        const Vec3 push = share.impulse->head<3>().stableNormalized();
+        const Vec3 after =
+            (motionOf(*share.body) + solve(massMatrix(*share.body), *share.impulse)).head<3>();
+        return std::max(0.0, -after.dot(push)) * push;
+    };
+    const auto mass = [](const EnergyBalance::Share& share) {
+        return 1.0 / static_cast<double>(share.body->getInvMass());
+    };
+    double moving = 0.0;
+    for (const auto& share : shares)
+        if (!share.anchored) moving += 0.5 * mass(share) * pressing(share).squaredNorm();
+    if (!(surplus > 0.0) || !(moving > 0.0)) return surplus;
+    const double taken = std::min(surplus, moving), kept = std::sqrt(1.0 - taken / moving);
+    for (auto& share : shares)
+        if (!share.anchored)
+            share.impulse->head<3>() += (1.0 - kept) * mass(share) * pressing(share);
+    return surplus - taken;
+}
+
 /// Energy of the cloth at rest (J).
 double energyAt(const ClothStep& step, const EnergyBalance::Cloth& cloth, const Points& x) {
     return cloth.mass_ratio * step.stepper.internal_energy(x).value_or(0.0) -
@@ -121,6 +145,7 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
     result.limited = left > 0.0;
     left = limitGains(shares, left);
     if (!cloth.floats) left = brake(shares, left);
+    if (piled) left = stopPressing(shares, left);
     // Where nothing else bears a body, cloth that is held back would let it through.
     result.held = left > little && borne;
     if (result.held) {

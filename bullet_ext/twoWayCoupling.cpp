@@ -70,6 +70,8 @@ void TwoWayCoupling::collect(const ClothStep& step) {
     if (held) {
         findOwners(step);
         findImpulses(step);
+    } else if (m_floats) {
+        keepMomentum(step);
     }
     for (auto it = m_accounts.begin(); it != m_accounts.end();) {
         closeSides(*it->first, it->second);
@@ -175,6 +177,20 @@ void TwoWayCoupling::findFreeVelocities(const ClothStep& step) {
         const double mass = m_masses[i];
         if (mass > 0.0) m_free.row(i) += step.length / mass * m_internal.row(i);
     }
+}
+
+/// Nothing holds the cloth at the end: what pushed it in passing, and no longer touches it, would
+/// not be pushed back.
+void TwoWayCoupling::keepMomentum(const ClothStep& step) {
+    Vec3 gained = Vec3::Zero();
+    for (Eigen::Index i = 0; i < m_masses.size(); ++i) {
+        Vec3 velocity = step.to.v.row(i) - step.from.v.row(i);
+        velocity -= step.length * step.boundary.gravity;
+        if (step.boundary.accelerations.size())
+            velocity -= step.length * step.boundary.accelerations.row(i).transpose();
+        gained += m_masses[i] * velocity;
+    }
+    returnToCloth(step, -gained);
 }
 
 /// The impulse on the body, without what a contact of this normal cannot give.

@@ -99,6 +99,7 @@ class TwoWayCoupling {
     void holdByAnchors();
     void findFreeVelocities(const ClothStep& step);
     void moveAnchored(const ClothStep& step);
+    void keepMomentum(const ClothStep& step);
     Vec3 withinFriction(const btRigidBody& body, const Vec3& normal, const Vec3& impulse) const;
     void chargeSide(const ClothStep& step, int node, const Vec3& impulse, Account& account) const;
     void closeSides(const btRigidBody& body, Account& account) const;

@@ -59,8 +59,9 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
              "only these; small: those of our own, demos: those of\nBullet's SoftDemo and "
              "SimpleCloth");
     add_list(app, "--solvers", options.solvers,
-             "bullet, quasi-newton-K, quasi-newton-KsR[-cgN] (R a second),\n"
-             "or a network NAME[+K]; default bullet,small");
+             "bullet, default (make_cloth() as it comes), quasi-newton-K,\n"
+             "quasi-newton-KsR[-cgN] (R a second), or a network NAME[+K];\n"
+             "default bullet,default,small");
     add_list(app, "--rates", rates, "even steps per second, 10 to 1000, default 60");
     add_list(app, "--steps", options.steps,
              "even, random (of 1/240 to 1/30 s, the same in all runs);\ndefault even");

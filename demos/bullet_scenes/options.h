@@ -7,7 +7,7 @@ namespace cloth {
 
 struct BulletScenesOptions {
     std::vector<std::string> scenes;  ///< empty: all
-    std::vector<std::string> solvers = {"bullet", "small"};
+    std::vector<std::string> solvers = {"bullet", "default", "small"};
     std::vector<int> rates = {60};              ///< of even steps (Hz)
     std::vector<std::string> steps = {"even"};  ///< of even and random
     int seconds = 10;                           ///< 1 to 600

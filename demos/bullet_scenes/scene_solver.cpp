@@ -71,7 +71,9 @@ std::unique_ptr<btGnnSoftBodySolver> SceneSolvers::make(const std::string& name,
                                                         const btGnnSolverSettings& settings) const {
     if (name == "bullet") return nullptr;
     StepperFactory factory;
-    if (const auto small = small_steps_named(name))
+    if (name == "default")
+        factory = small_steps({});
+    else if (const auto small = small_steps_named(name))
         factory = small_steps(*small);
     else if (const auto iterations = number_after(name, "quasi-newton-"))
         factory = quasi_newton(*iterations);

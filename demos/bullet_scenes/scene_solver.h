@@ -8,9 +8,10 @@
 
 namespace cloth {
 
-/// Makes soft body solvers by name: "bullet" is Bullet's own (null), "quasi-newton-K" steps cloth
-/// with K iterations at the world's rate, "xpbd-N" with N sub-steps, everything else is a network
-/// NAME or NAME+K of the folder of weights (empty: the committed ones), safeguarded as it ships.
+/// Makes soft body solvers by name: "bullet" is Bullet's own (null), "default" is make_cloth() as
+/// it comes, "quasi-newton-K" steps cloth with K iterations at the world's rate, "xpbd-N" with N
+/// sub-steps, everything else is a network NAME or NAME+K of the folder of weights (empty: the
+/// committed ones), safeguarded as it ships.
 class SceneSolvers {
  public:
     explicit SceneSolvers(std::string weights = "") : m_weights(std::move(weights)) {}

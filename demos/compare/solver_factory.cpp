@@ -90,6 +90,7 @@ std::unique_ptr<Stepper> make_quasi_newton(std::string name, const ComparisonSce
     const Integrator integrator = take_integrator(name);
     if (name == "quasi-newton") {
         settings.step = StepSettings::whole();
+    } else if (name == "default") {  // as they are
     } else if (const auto small = small_steps_named(name)) {
         settings.step = *small;
     } else {
@@ -195,7 +196,8 @@ std::unique_ptr<Stepper> make_own_solver(const std::string& name, const Comparis
                                          const SolverSettings& settings) {
     if (name == "reference" || name == "reference" + bdf2 || starts_with(name, "newton"))
         return make_newton(name, scene);
-    if (starts_with(name, "quasi-newton")) return make_quasi_newton(name, scene);
+    if (name == "default" || starts_with(name, "quasi-newton"))
+        return make_quasi_newton(name, scene);
     if (starts_with(name, "xpbd")) return make_xpbd(name, scene);
     if (starts_with(name, "skinning")) return make_skinning(name, scene, settings);
     return make_network(name, scene, settings);
@@ -227,7 +229,8 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
     if (std::filesystem::exists(file)) return file;
     throw UsageError(
         "solver " + variant +
-        ": is unknown; choose bullet, bullet-fine, bullet-K, bullet-KxS, reference, newton-K, "
+        ": is unknown; choose default, bullet, bullet-fine, bullet-K, bullet-KxS, reference, "
+        "newton-K, "
         "quasi-newton, quasi-newton-K, quasi-newton-KsR[-cgN], quasi-newton-KxS, xpbd-N, skinning, "
         "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +

@@ -33,6 +33,7 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 ///
 /// | name               | is                                                            |
 /// |--------------------|---------------------------------------------------------------|
+/// | default            | the library's: ClothStepper with default settings             |
 /// | bullet             | Bullet's own, 10 iterations, 2 sub-steps per frame            |
 /// | bullet-fine        | 5 iterations, 8 sub-steps                                     |
 /// | bullet-K           | K iterations, 2 sub-steps                                     |
@@ -41,8 +42,9 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 /// | newton-K           | K iterations of it                                            |
 /// | quasi-newton       | whole quasi-Newton steps with error control, guarded          |
 /// | quasi-newton-KsR   | R small steps a second, K iterations each, guarded; 3s120 is  |
-/// |                    | the default of the library                                    |
-/// | quasi-newton-KsR-cgN | the same by Newton's method, N conjugate gradients each     |
+/// |                    | the default of soft cloth                                     |
+/// | quasi-newton-KsR-cgN | the same by Newton's method, N conjugate gradients each;    |
+/// |                    | 1s120-cg10 is the default of stiff cloth                      |
 /// | quasi-newton-K     | K quasi-Newton iterations                                     |
 /// | quasi-newton-KxS   | the same in S sub-steps                                       |
 /// | xpbd-N             | springs relaxed in N sub-steps                                |

@@ -31,7 +31,7 @@ SolverChoice SolverChoice::of(const std::string& name) {
 }
 
 std::vector<std::string> solver_kinds() {
-    std::vector<std::string> kinds = {"quasi-newton", "quasi-newton-K", "quasi-newton-3s120",
+    std::vector<std::string> kinds = {"default", "quasi-newton", "quasi-newton-K",
                                       "quasi-newton-bdf2", "xpbd-N"};
     for (const std::string& network : networks_in("")) {
         kinds.push_back(network);

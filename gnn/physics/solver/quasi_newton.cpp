@@ -128,7 +128,7 @@ bool QuasiNewton::start(const IncrementalPotential& potential, const Points& x,
     if (!m_matrix.prepare(garment, potential.inertial_dt())) return false;
     if (!m_continued) m_history.clear();
     m_contacts.begin_step(potential, m_matrix.row_of());
-    if (m_settings.hessian_cg_iterations == 0 && m_settings.contact_cg_iterations > 0 &&
+    if (hessian_cg_iterations() == 0 && m_settings.contact_cg_iterations > 0 &&
         m_contacts.active() && !(m_continued && m_matrix.deflate_as_before()))
         m_matrix.deflate(x);
     if (at_x) {
@@ -160,8 +160,7 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
         if (!line_search(potential, x, report)) return false;
     }
     ++report.iterations;
-    if (m_settings.hessian_cg_iterations == 0)
-        m_history.push(m_direction, m_gradient, m_next_gradient);
+    if (hessian_cg_iterations() == 0) m_history.push(m_direction, m_gradient, m_next_gradient);
     m_gradient.swap(m_next_gradient);
     update_residual(potential, report);
     return true;
@@ -170,9 +169,9 @@ bool QuasiNewton::iterate(const IncrementalPotential& potential, Points& x,
 void QuasiNewton::find_direction(const IncrementalPotential& potential, const Points& x) {
     m_right_side = -m_gradient;
     m_contacts.linearise(potential, x);
-    if (m_settings.hessian_cg_iterations > 0) {
-        m_matrix.solve(potential.garment(), x, m_right_side, m_contacts,
-                       m_settings.hessian_cg_iterations, m_direction);
+    if (hessian_cg_iterations() > 0) {
+        m_matrix.solve(potential.garment(), x, m_right_side, m_contacts, hessian_cg_iterations(),
+                       m_direction);
         return;
     }
     m_history.first_loop(m_right_side);

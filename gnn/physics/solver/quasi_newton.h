@@ -114,6 +114,9 @@ class QuasiNewton {
     /// Whether minimisations go on with the history and the deflated fields of the one before,
     /// which suit a step of the same length that follows it at once. By default they do not.
     void set_continued(bool continued) { m_continued = continued; }
+    /// Whether minimisations take the Hessian where settings have hessian_cg_iterations. By default
+    /// they do.
+    void set_by_hessian(bool by_hessian) { m_by_hessian = by_hessian; }
 
     const QuasiNewtonMatrix& matrix() const { return m_matrix; }
 
@@ -124,12 +127,15 @@ class QuasiNewton {
     void find_direction(const IncrementalPotential& potential, const Points& x);
     bool line_search(const IncrementalPotential& potential, Points& x, MinimiseReport& report);
     void update_residual(const IncrementalPotential& potential, MinimiseReport& report) const;
+    int hessian_cg_iterations() const {
+        return m_by_hessian ? m_settings.hessian_cg_iterations : 0;
+    }
 
     QuasiNewtonSettings m_settings;
     QuasiNewtonMatrix m_matrix;
     ContactHessian m_contacts;
     LbfgsHistory m_history;
-    bool m_continued = false;
+    bool m_continued = false, m_by_hessian = true;
     Points m_all_gradient, m_trial;                                 ///< |V| x 3
     Points m_gradient, m_next_gradient, m_direction, m_right_side;  ///< free vertices (n x 3)
     mutable Points m_gathered, m_preconditioned;                    ///< n x 3

@@ -355,11 +355,10 @@ int ClothStepper::affordable(int substeps, int least) const {
     return substeps;
 }
 
-/// Halved until each has time for two iterations: with fewer it is better to take fewer.
+/// Halved until each has time for the iterations that make it worthwhile.
 int ClothStepper::affordable_small_steps(int count) const {
-    constexpr int worthwhile = 2;
-    while (count > 1 && count * worthwhile * m_iteration_ms > m_deadline.left())
-        count = (count + 1) / 2;
+    const double each_ms = m_solver->worthwhile_iterations() * m_iteration_ms;
+    while (count > 1 && count * each_ms > m_deadline.left()) count = (count + 1) / 2;
     return count;
 }
 

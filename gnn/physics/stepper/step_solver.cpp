@@ -18,10 +18,24 @@ constexpr int most_iterations = 200;  // towards a residual that is asked for
 // trembling, as many in one step do not.
 constexpr double rest_speed = 0.1;  // m/s
 
-const StepSettings& checked(const StepSettings& settings) {
+constexpr int newton_steps = 4;            // in place of many iterations
+constexpr double stiff_wave_speed = 32.0;  // m/s, along the cloth; real cotton has 170, soft 15
+
+bool is_stiff(const Fabric& fabric) {
+    return fabric.longitudinal() > stiff_wave_speed * stiff_wave_speed * fabric.density;
+}
+
+/// As they are for this fabric.
+StepSettings checked(StepSettings settings, const Fabric& fabric, bool has_start) {
     check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
     check_range("StepSettings.small_step_rate", settings.small_step_rate, 0.0, 1e4);
+    check_range("StepSettings.stiff_cg_iterations", settings.stiff_cg_iterations, 0, 200);
+    const bool by_newton = settings.small_step_rate > 0.0 && settings.stiff_cg_iterations > 0;
+    if (by_newton && is_stiff(fabric) && !has_start) {
+        settings.quasi_newton.iterations = 1;
+        settings.quasi_newton.hessian_cg_iterations = settings.stiff_cg_iterations;
+    }
     return settings;
 }
 
@@ -41,11 +55,11 @@ std::string suffix_of(const IterationLimits& limits, char mark) {
 StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
                        std::shared_ptr<StepStart> start, std::shared_ptr<ObstacleTrees> trees)
     : m_garment(&garment),
-      m_settings(checked(settings)),
+      m_settings(checked(settings, garment.fabric(), start != nullptr)),
       m_start(std::move(start)),
       m_potential(garment, settings.potential),
       m_time(settings.potential.integrator),
-      m_quasi_newton(garment, settings.quasi_newton),
+      m_quasi_newton(garment, m_settings.quasi_newton),
       m_newton(garment, settings.newton),
       m_proximity(settings.proximity, std::move(trees)),
       m_ridges(garment),
@@ -93,6 +107,14 @@ IterationLimits StepSolver::adjusted(IterationLimits limits) const {
     return limits;
 }
 
+/// Where settings ask for small steps by Newton's method, of which one step does what many
+/// iterations do: more of them cost much and gain little.
+IterationLimits StepSolver::enough(const IterationLimits& limits) const {
+    const bool by_newton =
+        m_settings.small_step_rate > 0.0 && m_settings.quasi_newton.hessian_cg_iterations > 0;
+    return by_newton ? IterationLimits::exactly(std::min(newton_steps, limits.iterations)) : limits;
+}
+
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
     const int count = small_steps(dt);
@@ -101,7 +123,7 @@ StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& st
         limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
                                              std::max(one.iterations, count * limits.iterations));
     }
-    return solve(boundary, dt, m_start.get(), limits, 1, state);
+    return solve(boundary, dt, m_start.get(), enough(limits), 1, state);
 }
 
 StepReport StepSolver::in_small_steps(int count, const Boundary& boundary, double dt, From from,
@@ -110,13 +132,17 @@ StepReport StepSolver::in_small_steps(int count, const Boundary& boundary, doubl
                  m_settings.quasi_newton, count, state);
 }
 
+int StepSolver::worthwhile_iterations() const {
+    return std::clamp(m_settings.quasi_newton.iterations, 1, 2);
+}
+
 /// Where few iterations are allowed they are not spread so thinly that the cloth gets softer.
 int StepSolver::small_steps(double dt) const {
     constexpr double rounding = 1e-3;  // callers' time steps are floats
-    constexpr int most = 64, worthwhile = 2;
+    constexpr int most = 64;
     if (m_settings.minimiser == MinimiserKind::newton) return 1;
     const double asked = std::ceil(m_settings.small_step_rate * dt - rounding);
-    const int allowed = std::min(most, m_max_iterations / worthwhile);
+    const int allowed = std::min(most, m_max_iterations / worthwhile_iterations());
     return asked < allowed ? std::max(1, static_cast<int>(asked)) : std::max(1, allowed);
 }
 
@@ -126,9 +152,14 @@ int StepSolver::small_steps(double dt, const ClothState& state) const {
     return state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed ? count : 1;
 }
 
+/// What is cut because of fast motion needs many iterations. The history's are cheaper, and nearer
+/// where goals are limited.
 StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
                             ClothState& state) {
-    return solve(boundary, dt, nullptr, limits, 1, state);
+    m_quasi_newton.set_by_hessian(limits.iterations <= newton_steps);
+    const StepReport report = solve(boundary, dt, nullptr, limits, 1, state);
+    m_quasi_newton.set_by_hessian(true);
+    return report;
 }
 
 StepReport StepSolver::solve(const Boundary& boundary, double dt, StepStart* start,
@@ -158,7 +189,7 @@ StepReport StepSolver::correct(const Boundary& boundary, double dt,
     find_contacts(boundary, m_x, StepEnd::end);
     if (through) through->hold_where_they_went_in(m_contacts, m_x);
     report.times.proximity = watch.lap();
-    if (!run(boundary, dt, nullptr, Start::here, limits, 1, state, report))
+    if (!run(boundary, dt, nullptr, Start::here, enough(limits), 1, state, report))
         return StepReport::failed();
     report.times.solve = watch.lap();
     return finish(boundary, dt, state, report);

@@ -40,22 +40,30 @@ struct StepSettings {
     /// motion, and need fewer iterations; above this rate no step is cut. Cloth that hardly moves
     /// takes one step instead, with the iterations of all, ten at least, and more for as long as
     /// they gain, so that it comes to rest where it should, and so does a step that has to reach a
-    /// residual. What a start predicts is shared out between them.
+    /// residual. By Newton's method it takes four iterations. What a start predicts is shared out
+    /// between them.
     double small_step_rate = 120.0;
+    /// Small steps of stiff cloth without a start are each one Newton step of so many
+    /// conjugate-gradient iterations, 0 to 200, whatever `quasi_newton` says: few iterations of
+    /// that hold stiff cloth back where it could bend. Parts of steps that are cut have many, which
+    /// are not Newton's. 0: they are like those of soft cloth. Stiff is cloth in which waves along
+    /// it, of the speed sqrt((2 mu + lambda) / density), are faster than 32 m/s.
+    int stiff_cg_iterations = 10;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.
     double safety_distance = 5e-4;
 
     /// Few iterations in each small step: as near to the equations of motion as many in one whole
-    /// step, in less time, and in nearly the same time in every step. The default.
+    /// step, in less time, and in nearly the same time in every step. The default of soft cloth.
     static StepSettings in_small_steps(double rate = 120.0, int iterations = 3) {
         StepSettings settings;
+        settings.stiff_cg_iterations = 0;
         settings.small_step_rate = rate;
         settings.quasi_newton = few(iterations);
         return settings;
     }
-    /// One Newton step in each small step, found by so many conjugate-gradient iterations: for
-    /// stiff cloth, such as real cotton, which few iterations of the default hold back.
+    /// One Newton step in each small step, found by so many conjugate-gradient iterations. The
+    /// default of stiff cloth, such as real cotton.
     static StepSettings newton_in_small_steps(double rate = 120.0, int cg_iterations = 10) {
         StepSettings settings = in_small_steps(rate, 1);
         settings.quasi_newton.hessian_cg_iterations = cg_iterations;
@@ -141,6 +149,8 @@ class StepSolver {
     int small_steps(double dt) const;
     /// The same from this state; 1: it is whole.
     int small_steps(double dt, const ClothState& state) const;
+    /// Iterations that a small step should have time for: better few steps than bad ones.
+    int worthwhile_iterations() const;
     /// Of the last step, at its end (|V| x 3, m/s).
     const Points& end_velocity() const { return m_v; }
 
@@ -169,6 +179,7 @@ class StepSolver {
 
  private:
     IterationLimits adjusted(IterationLimits limits) const;
+    IterationLimits enough(const IterationLimits& limits) const;
     enum class Start { guess, here };  ///< here: m_x
     StepReport solve(const Boundary& boundary, double dt, StepStart* start,
                      const IterationLimits& limits, int parts, ClothState& state);

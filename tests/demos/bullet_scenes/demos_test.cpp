@@ -16,7 +16,7 @@ namespace cloth::demos_test {
 namespace {
 
 constexpr double kSeconds = 4.0;  // until what falls has hit what it falls on
-constexpr char kPhysics[] = "quasi-newton-3";
+constexpr char kPhysics[] = "default";
 
 SceneRunSettings settings_of(const std::string& solver, int rate = 60) {
     SceneRunSettings settings;
@@ -71,6 +71,9 @@ void PrintTo(const Stepping& stepping, std::ostream* out) {
 /// Steps of the network are of 1/30 s, and its iterations fewer than such stiff sheets need.
 const Stepping kSteppings[] = {{"physics_at_240_Hz", kPhysics, 240, 1e-3},
                                {"physics_in_random_steps", kPhysics, 0, 1e-3},
+                               {"three_iterations_at_60_Hz", "quasi-newton-3", 60, 1e-3},
+                               {"three_iterations_at_240_Hz", "quasi-newton-3", 240, 1e-3},
+                               {"three_iterations_in_random_steps", "quasi-newton-3", 0, 1e-3},
                                {"learned_at_60_Hz", "small", 60, 1e-2},
                                {"learned_at_240_Hz", "small", 240, 1e-2},
                                {"learned_in_random_steps", "small", 0, 1e-2}};

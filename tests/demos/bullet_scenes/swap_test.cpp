@@ -53,7 +53,7 @@ std::vector<SwapCase> swap_cases() {
     std::vector<SwapCase> cases;
     for (const SceneRecipe& recipe : smallScenes()) {
         cases.push_back({"quasi-newton-3", recipe, 0.001});
-        cases.push_back({"quasi-newton-3s120", recipe, 0.001});
+        cases.push_back({"default", recipe, 0.001});
         cases.push_back({"small", recipe, 0.01});
     }
     return cases;
