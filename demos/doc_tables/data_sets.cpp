@@ -149,7 +149,7 @@ std::vector<DataSet> data_sets() {
         {"hard_cases",
          figures + "hard_cases.json",
          "build/release/demos/hard_cases"
-         " --steppers quasi-newton,quasi-newton-bdf2,quasi-newton-3s120,small,small+3,fast,fast+0,"
+         " --steppers default,quasi-newton,quasi-newton-bdf2,small,small+3,fast,fast+0,"
          "xpbd-40 "
          "--no-pictures --out OUT",
          "hard_cases.json",
@@ -160,7 +160,7 @@ std::vector<DataSet> data_sets() {
         {"bullet_scenes",
          figures + "bullet_scenes.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene small"
-         " --solvers bullet,quasi-newton-3,small --no-videos --out OUT",
+         " --solvers bullet,default,small --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},
@@ -168,7 +168,7 @@ std::vector<DataSet> data_sets() {
          figures + "bullet_demos.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene"
          " Cloth,ClothAttach,CapsuleCollision,Collide3,Cutting1,SimpleCloth,Aero,Aero2"
-         " --solvers bullet,quasi-newton-3,small --reference none --no-videos --out OUT",
+         " --solvers bullet,default,small --reference none --no-videos --out OUT",
          "bullet_scenes.json",
          {},
          {}},

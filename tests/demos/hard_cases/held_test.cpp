@@ -44,7 +44,7 @@ std::vector<Pair> all_pairs() {
     const std::string chance = "clipping-armature";
     std::vector<Pair> pairs;
     for (const HardCase& hard : hard_cases())
-        for (const char* stepper : {"quasi-newton", "quasi-newton-3s120", "small", "fast"})
+        for (const char* stepper : {"default", "quasi-newton", "small", "fast"})
             if (hard.name != chance || std::string(stepper) == "fast")
                 pairs.emplace_back(hard.name, stepper);
     return pairs;
