@@ -268,7 +268,7 @@ TEST_F(GuideSnippets, Solvers) {
         return cloth::make_cloth(garment, settings);
     };
     const auto physics = [](const cloth::Garment& garment) {
-        return cloth::make_cloth(garment);  // quasi-newton-3s120
+        return cloth::make_cloth(garment);  // the default
     };
     const auto whole_steps = [](const cloth::Garment& garment) {  // quasi-newton
         cloth::ClothSettings settings;
