@@ -11,9 +11,10 @@ namespace cloth {
 /// The last limit of two-way coupling: what cloth and bodies have after a cloth step, they had
 /// before it, or the world put it in. Energy that came from nowhere is taken from the motion of the
 /// cloth, without changing its momentum where nothing else holds it, then from what bodies gain,
-/// then from all motion of bodies that the cloth is anchored to. Where the fabric itself took up
-/// more than that, and there is ground that can bear the bodies, the cloth does not go all the way:
-/// rather inside a body for a while than thrown.
+/// then from all motion of bodies that the cloth is anchored to, and from that of bodies that press
+/// into cloth which nothing else bears. Where the fabric itself took up more than that, and there
+/// is ground that can bear the bodies, the cloth does not go all the way: rather inside a body for
+/// a while than thrown.
 /// What would lift the cloth by little more than a centimetre, as contacts do that push it out, is
 /// owed there, and where bodies are anchored, and paid when it becomes motion.
 ///

@@ -29,6 +29,15 @@ Vec3 limitedTurn(const Vec3& turning, const Vec3& change, double length) {
     return speed > limit ? Vec3((limit / speed) * (turning + change) - turning) : change;
 }
 
+/// A node's change of velocity by other things than gravity and node forces.
+Vec3 changeByOthers(const ClothStep& step, Eigen::Index node) {
+    Vec3 change = step.to.v.row(node) - step.from.v.row(node);
+    change -= step.length * step.boundary.gravity;
+    if (step.boundary.accelerations.size())
+        change -= step.length * step.boundary.accelerations.row(node).transpose();
+    return change;
+}
+
 /// Velocity that a body got by moving with the cloth.
 Vector6 changeByMoving(const ClothStep& step, const btRigidBody& body) {
     if (!step.anchored) return Vector6::Zero();
@@ -183,13 +192,8 @@ void TwoWayCoupling::findFreeVelocities(const ClothStep& step) {
 /// not be pushed back.
 void TwoWayCoupling::keepMomentum(const ClothStep& step) {
     Vec3 gained = Vec3::Zero();
-    for (Eigen::Index i = 0; i < m_masses.size(); ++i) {
-        Vec3 velocity = step.to.v.row(i) - step.from.v.row(i);
-        velocity -= step.length * step.boundary.gravity;
-        if (step.boundary.accelerations.size())
-            velocity -= step.length * step.boundary.accelerations.row(i).transpose();
-        gained += m_masses[i] * velocity;
-    }
+    for (Eigen::Index i = 0; i < m_masses.size(); ++i)
+        gained += m_masses[i] * changeByOthers(step, i);
     returnToCloth(step, -gained);
 }
 
@@ -288,11 +292,7 @@ void TwoWayCoupling::findImpulses(const ClothStep& step) {
         const int owner = m_owner[static_cast<size_t>(i)];
         const double mass = m_masses[i];
         if (owner < 0 || mass == 0.0) continue;
-        Vec3 velocity = step.to.v.row(i) - step.from.v.row(i);
-        velocity -= h * step.boundary.gravity;
-        if (step.boundary.accelerations.size())
-            velocity -= h * step.boundary.accelerations.row(i).transpose();
-        m_impulses.row(owner) += mass * velocity;
+        m_impulses.row(owner) += mass * changeByOthers(step, i);
         if (m_internal_known) m_impulses.row(owner) -= h * m_internal.row(i);
     }
     for (int i = 0; i < m_body.m_nodes.size(); ++i)

@@ -122,7 +122,8 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
     static const std::pair<const char*, const char*> choices[] = {
         {"xpbd-40", "a body carries the cloth, and nothing else fits into the time"},
         {"quasi-newton-3s120",
-         "in general: the default of soft cloth. 120 small steps a second, with three iterations each"},
+         "in general: the default of soft cloth. 120 small steps a second, with three iterations "
+         "each"},
         {"quasi-newton-2s120",
          "time is short, and XPBD lacks what you need: limbs, `maxMs`, reactions through anchors"},
         {"quasi-newton",
