@@ -31,6 +31,7 @@ StepSettings checked(StepSettings settings, const Fabric& fabric, bool has_start
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
     check_range("StepSettings.small_step_rate", settings.small_step_rate, 0.0, 1e4);
     check_range("StepSettings.stiff_cg_iterations", settings.stiff_cg_iterations, 0, 200);
+    check(settings.quasi_newton, "QuasiNewtonSettings");  // before they are replaced
     const bool by_newton = settings.small_step_rate > 0.0 && settings.stiff_cg_iterations > 0;
     if (by_newton && is_stiff(fabric) && !has_start) {
         settings.quasi_newton.iterations = 1;

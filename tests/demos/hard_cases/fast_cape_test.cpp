@@ -20,9 +20,12 @@ struct Tangled {
     int longest = 0;  ///< of these, one after the other
 };
 
+/// By the iterations of soft cloth. By Newton's method, the default of so stiff a cape, fewer edges
+/// are tangled, but a few may stay so: not every tangle can be undone.
 Tangled run(int untangling_moves) {
     const HardSceneParts parts = fast_cape();
     ClothStepperSettings settings;
+    settings.step = StepSettings::in_small_steps();
     settings.step.potential.self_contact = parts.self_contact;
     settings.step.potential.self_contact.untangling_moves = untangling_moves;
     ClothStepper stepper(parts.garment, settings);
