@@ -131,7 +131,7 @@ TEST_P(DemoEnergy, NeverRisesByItself) {
 INSTANTIATE_TEST_SUITE_P(Scenes, DemoEnergy, testing::ValuesIn(sheets_without_heap()), name_of);
 
 // The fabric of a stiff sheet that a heap of bodies falls on takes up more energy than the bodies
-// lose, which is told: 3 % of the scale, Bullet's 18 %. Nothing is thrown.
+// lose, which is told: 1 to 8 % of the scale, by chance, Bullet's 18 %. Nothing is thrown.
 TEST(DemoHeap, FallsNoFasterThanFreely) {
     const SceneResult result = run(demoSheets().front(), kPhysics);
     ASSERT_STREQ(demoSheets().front().name, "Cloth");
@@ -139,7 +139,7 @@ TEST(DemoHeap, FallsNoFasterThanFreely) {
     const double free_fall = 10.0 * kSeconds;  // the demo's gravity
     EXPECT_LT(result.row.body_speed_max, free_fall);
     EXPECT_LT(result.row.node_speed_max, result.row.body_speed_max);
-    EXPECT_LT(result.row.energy_rise_j, 0.1 * result.row.energy_scale_j);
+    EXPECT_LT(result.row.energy_rise_j, run(demoSheets().front(), "bullet").row.energy_rise_j);
     EXPECT_LT(momentum_error(demoSheets().front(), settings_of(kPhysics), SceneSolvers()), 1e-3);
 }
 
