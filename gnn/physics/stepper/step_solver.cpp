@@ -25,8 +25,8 @@ bool is_stiff(const Fabric& fabric) {
     return fabric.longitudinal() > stiff_wave_speed * stiff_wave_speed * fabric.density;
 }
 
-/// As they are for this fabric.
-StepSettings checked(StepSettings settings, const Fabric& fabric, bool has_start) {
+/// What they mean for this fabric, checked.
+StepSettings settings_for(StepSettings settings, const Fabric& fabric, bool has_start) {
     check_range("StepSettings.contact_updates", settings.contact_updates, 0, 10);
     check_range("StepSettings.safety_distance", settings.safety_distance, 0.0, 1e-3);
     check_range("StepSettings.small_step_rate", settings.small_step_rate, 0.0, 1e4);
@@ -56,7 +56,7 @@ std::string suffix_of(const IterationLimits& limits, char mark) {
 StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
                        std::shared_ptr<StepStart> start, std::shared_ptr<ObstacleTrees> trees)
     : m_garment(&garment),
-      m_settings(checked(settings, garment.fabric(), start != nullptr)),
+      m_settings(settings_for(settings, garment.fabric(), start != nullptr)),
       m_start(std::move(start)),
       m_potential(garment, settings.potential),
       m_time(settings.potential.integrator),
