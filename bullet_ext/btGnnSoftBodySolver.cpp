@@ -121,6 +121,11 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
             name + ": node " + std::to_string(result.stretched_anchor) +
             ": its anchor is farther away than the cloth reaches, an edge there is over twice as "
             "long as at rest. Remedy: anchor the node where it is, or take a stiffer fabric");
+    if (result.idle_anchor >= 0)
+        troubles.push_back(name + ": node " + std::to_string(result.idle_anchor) +
+                           ": appendDeformableAnchor() to a rigid body does nothing outside of "
+                           "Bullet's deformable "
+                           "world. Remedy: appendAnchor(), or a link of a btMultiBody");
     return troubles;
 }
 

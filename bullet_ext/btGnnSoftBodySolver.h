@@ -109,8 +109,8 @@ struct btGnnSolverStatus {
     std::vector<btGnnSolverMessage> messages;
 };
 
-/// Steps the cloth of a btSoftRigidDynamicsWorld with any cloth::Stepper, learned or not; hand it
-/// to the world in place of Bullet's own solver:
+/// Steps the cloth of a btSoftRigidDynamicsWorld, or a btSoftMultiBodyDynamicsWorld, with any
+/// cloth::Stepper, learned or not; hand it to the world in place of Bullet's own solver:
 ///
 ///     btGnnSoftBodySolver solver([](const cloth::Garment& garment) {
 ///         return cloth::make_cloth(garment);

@@ -289,7 +289,7 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
 std::vector<NearSolid> BulletObstacles::solidsNear(const btSoftBody& body, const Vec3& low,
                                                    const Vec3& high, const TimeSpan& span) {
     const auto moves = [](const btCollisionObject* object) {
-        return isPushable(object) || object->isKinematicObject();
+        return isPushable(object) || object->isKinematicObject() || isLink(*object);
     };
     const std::vector<const btCollisionObject*> objects = objectsIn(body, low, high);
     const bool closing = objects.size() > 1 && std::any_of(objects.begin(), objects.end(), moves);

@@ -6,6 +6,7 @@
 BT_USE_DOUBLE_PRECISION and link bullet.pc (Debian), not bullet-float64.pc"
 #endif
 
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <LinearMath/btTransform.h>
 
 #include "data/core/boundary.h"
@@ -25,6 +26,11 @@ inline Eigen::Matrix3d toMatrix(const btMatrix3x3& m) {
     Eigen::Matrix3d matrix;
     for (int r = 0; r < 3; ++r) matrix.row(r) = toVec3(m[r]);
     return matrix;
+}
+
+/// Whether it is a part of a btMultiBody.
+inline bool isLink(const btCollisionObject& object) {
+    return object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
 }
 
 inline bool isFinite(const btVector3& v) {

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "bullet_ext/softBodyGarment.h"
+
 namespace cloth {
 
 namespace {
@@ -52,6 +54,8 @@ void ClothSleep::afterStep(const Points& x, double h, const BulletObstacles& obs
 bool ClothSleep::supportsRest(const std::vector<NearObject>& objects) const {
     for (int a = 0; a < m_body.m_anchors.size(); ++a)
         if (!readyToSleep(*m_body.m_anchors[a].m_body)) return false;
+    for (const LinkAnchor& anchor : linkAnchors(m_body))
+        if (!readyToSleep(*anchor.link)) return false;
     return std::all_of(objects.begin(), objects.end(), [](const NearObject& near) {
         return !near.moves && readyToSleep(*near.object);
     });
@@ -62,6 +66,8 @@ ClothSleep::Outside ClothSleep::look(const BulletObstacles& obstacles) const {
     outside.objects = obstacles.objectsNear(m_body, m_low, m_high);
     for (int a = 0; a < m_body.m_anchors.size(); ++a)
         outside.anchors.push_back(m_body.m_anchors[a].m_body->getWorldTransform());
+    for (const LinkAnchor& anchor : linkAnchors(m_body))
+        outside.anchors.push_back(anchor.link->getWorldTransform());
     outside.gravity = m_body.m_worldInfo->m_gravity;
     outside.wind = m_body.getWindVelocity();
     return outside;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "bullet_ext/rigidImpulse.h"
+#include "bullet_ext/softBodyGarment.h"
 
 namespace cloth {
 
@@ -34,6 +35,7 @@ bool floatsFreely(const btSoftBody& body, const ClothStep& step) {
         if (!(body.m_nodes[pin].m_im > 0)) return false;
     for (int a = 0; a < body.m_anchors.size(); ++a)
         if (!isDynamic(*body.m_anchors[a].m_body)) return false;
+    if (!linkAnchors(body).empty()) return false;
     return std::all_of(step.near.begin(), step.near.end(),
                        [](const NearSolid& solid) { return solid.body != nullptr; });
 }

@@ -189,6 +189,25 @@ bool isHardAnchor(const btSoftBody::Anchor& anchor) {
     return anchor.m_influence >= btScalar(0.999);
 }
 
+std::vector<LinkAnchor> linkAnchors(const btSoftBody& body) {
+    std::vector<LinkAnchor> anchors;
+    for (int a = 0; a < body.m_deformableAnchors.size(); ++a) {
+        const btSoftBody::DeformableNodeRigidAnchor& anchor = body.m_deformableAnchors[a];
+        if (isLink(*anchor.m_cti.m_colObj))
+            anchors.push_back(
+                {nodeIndex(body, anchor.m_node), anchor.m_cti.m_colObj, anchor.m_local});
+    }
+    return anchors;
+}
+
+int idleAnchor(const btSoftBody& body) {
+    for (int a = 0; a < body.m_deformableAnchors.size(); ++a) {
+        const btSoftBody::DeformableNodeRigidAnchor& anchor = body.m_deformableAnchors[a];
+        if (!isLink(*anchor.m_cti.m_colObj)) return nodeIndex(body, anchor.m_node);
+    }
+    return -1;
+}
+
 std::vector<int> pinnedNodes(const btSoftBody& body) {
     std::vector<int> pins;
     for (int i = 0; i < body.m_nodes.size(); ++i)
@@ -196,6 +215,7 @@ std::vector<int> pinnedNodes(const btSoftBody& body) {
     for (int a = 0; a < body.m_anchors.size(); ++a)
         if (isHardAnchor(body.m_anchors[a]))
             pins.push_back(nodeIndex(body, body.m_anchors[a].m_node));
+    for (const LinkAnchor& anchor : linkAnchors(body)) pins.push_back(anchor.node);
     std::sort(pins.begin(), pins.end());
     pins.erase(std::unique(pins.begin(), pins.end()), pins.end());
     return pins;

@@ -24,7 +24,21 @@ bool isClosed(const btSoftBody& body);
 /// Anchors of influence 1 are pins that follow their body; weaker ones pull, see softAnchors.h.
 bool isHardAnchor(const btSoftBody::Anchor& anchor);
 
-/// Nodes that something else moves: zero inverse mass, or held by a hard anchor. Sorted.
+/// A node that is held by a link of a btMultiBody, by appendDeformableAnchor(): appendAnchor()
+/// takes rigid bodies only. The node follows the link, which does not feel it.
+struct LinkAnchor {
+    int node;
+    const btCollisionObject* link;
+    btVector3 local;  ///< in the frame of the link (m)
+
+    btVector3 place() const { return link->getWorldTransform() * local; }
+};
+std::vector<LinkAnchor> linkAnchors(const btSoftBody& body);
+/// A node with a deformable anchor to a rigid body, which does nothing outside of Bullet's
+/// deformable world; -1: there is none.
+int idleAnchor(const btSoftBody& body);
+
+/// Nodes that something else moves: zero inverse mass, or held by a hard anchor or a link. Sorted.
 std::vector<int> pinnedNodes(const btSoftBody& body);
 
 /// Positions of the nodes (|V| x 3, m).

@@ -105,6 +105,7 @@ SoftBodyStep::Result SoftBodyStep::end(BulletObstacles& obstacles) {
     writeNodes();
     measureDepth(obstacles);
     m_result.stretched_anchor = stretchedAnchor();
+    m_result.idle_anchor = idleAnchor(m_body);
     handOver(obstacles);
     m_cloth_step.begin -= m_h;
     m_sleep.afterStep(m_shown.x, m_world_h, obstacles, m_box.low, m_box.high);
@@ -241,14 +242,17 @@ void SoftBodyStep::takePins() {
 /// Puts anchored nodes where their bodies are.
 void SoftBodyStep::followAnchors() {
     const std::vector<int>& pins = m_garment->pins();
-    for (int a = 0; a < m_body.m_anchors.size(); ++a) {
-        const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
-        const int node = static_cast<int>(anchor.m_node - &m_body.m_nodes[0]);
+    const auto put = [&](int node, const btVector3& place) {
         const auto pin = std::lower_bound(pins.begin(), pins.end(), node);
-        const btVector3 place = anchor.m_body->getWorldTransform() * anchor.m_local;
         if (pin != pins.end() && *pin == node && isFinite(place))
             m_pins_after.row(pin - pins.begin()) = toVec3(place);
+    };
+    for (int a = 0; a < m_body.m_anchors.size(); ++a) {
+        const btSoftBody::Anchor& anchor = m_body.m_anchors[a];
+        put(static_cast<int>(anchor.m_node - &m_body.m_nodes[0]),
+            anchor.m_body->getWorldTransform() * anchor.m_local);
     }
+    for (const LinkAnchor& anchor : linkAnchors(m_body)) put(anchor.node, anchor.place());
 }
 
 Points SoftBodyStep::pinsAt(double time) const {

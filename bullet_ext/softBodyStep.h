@@ -81,6 +81,7 @@ class SoftBodyStep {
         bool calmed = false;         ///< cloth and bodies would have made much energy
         bool without_goals = false;  ///< the garment has limits, and goals were never given
         int stretched_anchor = -1;   ///< node that an anchor holds farther than the cloth reaches
+        int idle_anchor = -1;        ///< node of an anchor that does nothing, see linkAnchors()
     };
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
     /// the world step and writes the nodes. Obstacles are looked for within `reach` (m):

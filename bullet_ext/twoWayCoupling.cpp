@@ -62,7 +62,7 @@ void TwoWayCoupling::collect(const ClothStep& step) {
     }
     m_calmed = m_held_back = false;
     m_floats = floatsFreely(m_body, step) && allSolidsKnown(step);
-    if (step.near.empty() && m_body.m_anchors.size() == 0) {
+    if (step.near.empty() && m_body.m_anchors.size() == 0 && linkAnchors(m_body).empty()) {
         m_accounts.clear();
         balanceAlone(step);
         return;
