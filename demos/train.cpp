@@ -40,6 +40,9 @@ struct RecipeOption {
 
 const RecipeOption recipe_options[] = {
     {"--learning-rate", "R", "", [](Recipe& r, double v) { r.base_rate = v; }},
+    {"--mean-share", "P",
+     "share of the iterations so far over which parameters are averaged for saving; 0: the last",
+     [](Recipe& r, double v) { r.mean_share = v; }},
     {"--position-weight", "W", "of the error of position in the loss",
      [](Recipe& r, double v) { r.position_weight = v; }},
     {"--target-iterations", "K",

@@ -63,6 +63,7 @@ void Trainer::save() {
     archive.write("iteration", torch::tensor(m_iteration));
     archive.write("seconds", torch::tensor(m_seconds, torch::kFloat64));
     archive.write("parameters", m_network.parameters().flat().detach());
+    if (m_mean.defined()) archive.write("mean", m_mean);
     m_adam.save(archive);
     m_statistics.write(archive);
     save_checkpoint(archive, m_settings.out);
@@ -81,6 +82,7 @@ void Trainer::load(InputArchive& archive, const std::string& file) {
     m_seconds = read_tensor(archive, "seconds").item<double>();
     torch::NoGradGuard no_grad;
     m_network.parameters().flat().copy_(read_tensor(archive, "parameters"));
+    if (m_mean.defined()) m_mean.copy_(read_tensor(archive, "mean"));
     m_adam.load(archive);
     m_statistics.read(archive);
     m_own_statistics = m_statistics;

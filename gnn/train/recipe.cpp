@@ -75,6 +75,7 @@ void Recipe::check() const {
     check_range("Recipe.target_iterations", target_iterations, 1, 1000);
     check_range("Recipe.loss_iterations", loss_iterations, 0, 100);
     check_range("Recipe.base_rate", base_rate, 1e-7, 0.1);
+    check_range("Recipe.mean_share", mean_share, 0.0, 1.0);
     check_range("Recipe.clip_norm", clip_norm, 0.0, 1e6);
     check_range("Recipe.heal_first", heal_first, 0.0, 1.0);
     check_range("Recipe.heal_last", heal_last, 0.0, 1.0);
@@ -102,6 +103,7 @@ std::string Recipe::describe() const {
          << skinned.share << ' ' << skinned.at_rest << ' ' << skinned.noise << " noise " << noise
          << " rollout " << max_rollout << ' ' << rollout_growth << " contact " << contact_first
          << ' ' << contact_last;
+    if (mean_share > 0.0) text << " mean " << mean_share;
     return text.str();
 }
 

@@ -41,7 +41,11 @@ struct Recipe {
 
     double base_rate = 2e-3;  ///< learning rate, 1e-7 to 0.1
     bool cosine = true;       ///< cosine decay to 2 % after a warm-up; else halving
-    double clip_norm = 0.0;   ///< of the gradient, 0 to 1e6; 0: twice the running median
+    /// Share of the iterations so far, 0 to 1, over which the parameters are averaged for saving
+    /// and validating; 0: the last ones. The last ones jump about their mean, the more so the
+    /// higher the rate (Polyak and Juditsky 1992).
+    double mean_share = 0.0;
+    double clip_norm = 0.0;  ///< of the gradient, 0 to 1e6; 0: twice the running median
 
     /// Share of next states that are the solver's, at the beginning and at the end, 0 to 1.
     double heal_first = 0.8, heal_last = 0.35;

@@ -82,6 +82,7 @@ Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
         m_lanes.emplace_back(k, m_factory, m_settings);
     if (!m_settings.start_weights.empty())
         m_network.import_weights(Weights::load(m_settings.start_weights));
+    if (m_settings.recipe.mean_share > 0.0) m_mean = m_network.parameters().flat().detach().clone();
     m_network.set_threads(m_settings.threads);
 }
 
@@ -255,6 +256,27 @@ void Trainer::differentiate_at_once() {
     m_sums.network_seconds += cpu_seconds() - start;
 }
 
+void Trainer::add_to_mean() {
+    if (!m_mean.defined()) return;
+    torch::NoGradGuard no_grad;
+    const double span = m_settings.recipe.mean_share * static_cast<double>(m_iteration);
+    m_mean.lerp_(m_network.parameters().flat(), 1.0 / std::max(1.0, span));
+}
+
+void Trainer::WithMean::swap() {
+    if (!m_trainer.m_mean.defined()) return;
+    torch::NoGradGuard no_grad;
+    Tensor& flat = m_trainer.m_network.parameters().flat();
+    const Tensor kept = flat.clone();
+    flat.copy_(m_trainer.m_mean);
+    m_trainer.m_mean.copy_(kept);
+}
+
+Weights Trainer::weights() {
+    const WithMean mean(*this);
+    return m_network.export_weights();
+}
+
 /// A step along the mean gradient of all sound lanes, of all processes.
 void Trainer::step_together() {
     Parameters& parameters = m_network.parameters();
@@ -274,6 +296,7 @@ void Trainer::step_together() {
     m_adam.step(parameters.flat(), parameters.gradient(),
                 m_settings.recipe.learning_rate(m_iteration, progress()),
                 m_settings.recipe.clip_norm);
+    add_to_mean();
     m_sums.network_seconds += cpu_seconds() - start;
 }
 

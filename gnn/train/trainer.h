@@ -88,13 +88,15 @@ class Trainer {
     double iterate();
 
     void save();
-    Weights weights() const { return m_network.export_weights(); }
+    /// The network as it is saved: Recipe::mean_share.
+    Weights weights();
     Network& network() { return m_network; }
     std::int64_t iteration() const { return m_iteration; }
 
  private:
     struct Run;
     struct Validated;
+    class WithMean;
 
     /// One scene of the batch: those it is drawn from, and what an iteration knows of it.
     struct Lane {
@@ -124,6 +126,7 @@ class Trainer {
     void differentiate_at_once();
     void add_gradient(int lanes);
     void step_together();
+    void add_to_mean();
     bool move_on(Lane& lane);
     void end(Lane& lane);
     void count(const Lane& lane);
@@ -142,7 +145,8 @@ class Trainer {
     torch::Device m_device;
     Network m_network;
     Adam m_adam;
-    torch::Tensor m_sum;  ///< of gradients, and how many there are
+    torch::Tensor m_mean;  ///< of the parameters, if the recipe has one
+    torch::Tensor m_sum;   ///< of gradients, and how many there are
     SceneFactory m_factory;
     std::vector<Lane> m_lanes;
     std::unique_ptr<Validation> m_validation;

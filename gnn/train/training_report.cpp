@@ -165,7 +165,10 @@ Trainer::Validated Trainer::validate() {
         start = m_run->seconds();
     }
     Validated validated;
-    validated.steps = m_validation->measure(m_network);
+    {
+        const WithMean mean(*this);
+        validated.steps = m_validation->measure(m_network);
+    }
     auto rollouts = m_rollouts->measure(weights(), m_run->stop);
     m_run->budget.spent(m_run->seconds() - start, m_run->seconds());
     validated.done = rollouts.has_value();

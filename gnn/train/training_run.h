@@ -29,4 +29,18 @@ struct Trainer::Run {
     std::int64_t first_iteration;
 };
 
+/// While it lives, the network has the mean of its parameters, if the recipe keeps one.
+class Trainer::WithMean {
+ public:
+    explicit WithMean(Trainer& trainer) : m_trainer(trainer) { swap(); }
+    ~WithMean() { swap(); }
+    WithMean(const WithMean&) = delete;
+    WithMean& operator=(const WithMean&) = delete;
+
+ private:
+    void swap();
+
+    Trainer& m_trainer;
+};
+
 }  // namespace cloth

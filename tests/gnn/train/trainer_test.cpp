@@ -55,7 +55,34 @@ TEST(Trainer, GoesOnExactlyWhereItStopped) {
         all.max_rollout = 3;
         all.rollout_growth = 4;
         all.heal_last = 0.0;
+        all.mean_share = 0.5;
     });
+}
+
+TEST(Trainer, SavesTheMeanOfTheParametersAndTrainsOnTheLast) {
+    TrainerSettings settings = tiny("last");
+    Trainer last(settings);
+    settings.out = tiny("mean").out;
+    settings.recipe.mean_share = 1.0;
+    Trainer mean(settings);
+    std::vector<double> sum(numbers(last).size(), 0.0);
+    for (int k = 0; k < 6; ++k) {
+        last.iterate();
+        mean.iterate();
+        const std::vector<float> now = numbers(last);
+        // the first iteration counts as the second does: both begin the mean
+        if (k > 0)
+            for (size_t i = 0; i < now.size(); ++i) sum[i] += static_cast<double>(now[i]);
+    }
+    EXPECT_EQ(numbers(last), numbers(mean));
+    mean.save();
+    EXPECT_EQ(numbers(last), numbers(mean)) << "after saving";
+    Network saved(settings.model, torch::kCPU, 1);
+    saved.import_weights(Weights::load(settings.out + "/weights.safetensors"));
+    const torch::Tensor flat = saved.parameters().flat().detach();
+    ASSERT_EQ(flat.numel(), static_cast<std::int64_t>(sum.size()));
+    for (size_t i = 0; i < sum.size(); ++i)
+        ASSERT_NEAR(flat.data_ptr<float>()[i], sum[i] / 5.0, 1e-5);
 }
 
 TEST(Trainer, ScenesOfABatchMayBeSharedByThreads) {
