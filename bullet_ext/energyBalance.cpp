@@ -92,6 +92,12 @@ double energyAt(const ClothStep& step, const EnergyBalance::Cloth& cloth, const 
            cloth.masses.dot(x * step.boundary.gravity);
 }
 
+/// What lifts the cloth by a hundredth of its edges (J).
+double smallLift(const ClothStep& step, const EnergyBalance::Cloth& cloth) {
+    return 0.01 * step.garment.mean_edge_length() * step.boundary.gravity.norm() *
+           cloth.masses.sum();
+}
+
 /// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
 double holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
     const double whole = energyAt(step, cloth, step.to.x);
@@ -125,19 +131,24 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
         m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.from.x).value_or(0.0);
         m_debt = 0.0;
     }
-    const double before = motionAndHeight(step, cloth.masses, step.from) + *m_elastic - m_debt;
+    double motion = motionAndHeight(step, cloth.masses, step.to) -
+                    motionAndHeight(step, cloth.masses, step.from) - cloth.work;
+    for (const Share& share : shares) motion += gainOf(*share.body, *share.impulse) + share.lift;
+    const double stored = cloth.mass_ratio * *energy - *m_elastic;
     m_elastic = cloth.mass_ratio * *energy;
-    double after = motionAndHeight(step, cloth.masses, step.to) + *m_elastic;
-    for (const Share& share : shares) after += gainOf(*share.body, *share.impulse) + share.lift;
     const bool borne = std::any_of(step.near.begin(), step.near.end(),
                                    [](const NearSolid& solid) { return !solid.body; });
     const bool anchored = std::any_of(shares.begin(), shares.end(),
                                       [](const Share& share) { return share.anchored; });
     const double little = 0.5 * cloth.masses.sum() * kSlow * kSlow;
-    const double surplus = after - before - cloth.work;
-    m_debt = 0.0;
     // Bullet pushes bodies that lie in hanging cloth about all the time, and that is work.
     const bool piled = !shares.empty() && !borne && !anchored;
+    const double owed = std::max(0.0, motion + stored + m_debt);
+    // Contacts that push coarse cloth stretch it a little, which seldom becomes motion. It is paid
+    // where it does: taken at once, it would be all of slow motion, and cloth creep as in honey.
+    const bool may_wait = shares.empty() && owed <= smallLift(step, cloth);
+    const double surplus = may_wait ? std::clamp(motion, 0.0, owed) : owed;
+    m_debt = (owed - surplus) * std::exp(-step.length / kForget);
     Result result;
     if (!(surplus > (piled ? little : 0.0))) return result;
     double left = calmCloth(step, cloth, surplus);
@@ -152,7 +163,7 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
         left = holdBack(step, cloth, left);
         m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.to.x).value_or(0.0);
     }
-    if (!piled) m_debt = left * std::exp(-step.length / kForget);
+    if (!piled) m_debt += left * std::exp(-step.length / kForget);
     return result;
 }
 

@@ -16,7 +16,8 @@ namespace cloth {
 /// is ground that can bear the bodies, the cloth does not go all the way: rather inside a body for
 /// a while than thrown.
 /// What would lift the cloth by little more than a centimetre, as contacts do that push it out, is
-/// owed there, and where bodies are anchored, and paid when it becomes motion.
+/// owed there, and where bodies are anchored. Where no body can be pushed, what would lift it by a
+/// hundredth of its edges is paid when it becomes motion, all else by any motion.
 ///
 /// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there only
 /// what is much more than that is taken.

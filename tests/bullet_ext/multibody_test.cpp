@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kNodes = 9;  // along a side
 constexpr double h = 1.0 / 60.0;
-const btVector3 kArm(0.5f, 0.06f, 0.06f);  // half extents
+const btVector3 kArm(0.5f, 0.06f, 0.2f);  // half extents
 
 /// An arm that turns about the z axis at the origin, and points along x.
 class ArmWorld {
