@@ -116,8 +116,30 @@ double holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double
 
 }  // namespace
 
+/// What the body gained in the last cloth step, as far as others have taken it since (J).
+double EnergyBalance::borneBefore(const Share& share, double length) const {
+    const auto found = m_pushed.find(share.body);
+    if (share.anchored || found == m_pushed.end()) return 0.0;
+    Vector6 expected = found->second.after;
+    expected.head<3>() += length * toVec3(share.body->getGravity());
+    const Matrix6 mass = massMatrix(*share.body);
+    const double lost = kineticEnergy(mass, expected) - kineticEnergy(mass, motionOf(*share.body));
+    return std::max(0.0, std::min(lost, found->second.gain));
+}
+
 EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& cloth,
                                             std::vector<Share>& shares) {
+    const Result result = balance(step, cloth, shares);
+    m_pushed.clear();
+    for (const Share& share : shares)
+        m_pushed[share.body] = {
+            gainOf(*share.body, *share.impulse),
+            motionOf(*share.body) + solve(massMatrix(*share.body), *share.impulse)};
+    return result;
+}
+
+EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth& cloth,
+                                             std::vector<Share>& shares) {
     constexpr double kForget = 1.0;  // s
     constexpr double kSlow = 0.5;    // m/s: motion of all of the cloth that nobody would miss
     constexpr double kTell = 10.0;   // times that energy
@@ -133,7 +155,11 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
     }
     double motion = motionAndHeight(step, cloth.masses, step.to) -
                     motionAndHeight(step, cloth.masses, step.from) - cloth.work;
-    for (const Share& share : shares) motion += gainOf(*share.body, *share.impulse) + share.lift;
+    for (const Share& share : shares) {
+        const double gain = gainOf(*share.body, *share.impulse);
+        const double borne_before = borneBefore(share, step.length);
+        motion += gain - std::clamp(gain, 0.0, borne_before) + share.lift;
+    }
     const double stored = cloth.mass_ratio * *energy - *m_elastic;
     m_elastic = cloth.mass_ratio * *energy;
     const bool borne = std::any_of(step.near.begin(), step.near.end(),

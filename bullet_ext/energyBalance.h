@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,9 @@ namespace cloth {
 ///
 /// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there only
 /// what is much more than that is taken.
+///
+/// A body that lies on something is pushed by the cloth on it and stopped by what it lies on, again
+/// and again. What it gained in the last step and lost since, it may gain in this one.
 ///
 /// The fabric takes part in the balance, so its energy has to be known, and all that the cloth
 /// touches: without Stepper::internal_energy(), near animated meshes, or with skinned goals,
@@ -52,8 +56,16 @@ class EnergyBalance {
     void forget() { m_elastic.reset(); }
 
  private:
-    std::optional<double> m_elastic;  ///< of the fabric after the last cloth step (J)
-    double m_debt = 0.0;              ///< energy that could not be taken yet (J)
+    struct Pushed {
+        double gain;    ///< (J)
+        Vector6 after;  ///< motion
+    };
+    Result balance(const ClothStep& step, const Cloth& cloth, std::vector<Share>& shares);
+    double borneBefore(const Share& share, double length) const;
+
+    std::optional<double> m_elastic;                ///< of the fabric after the last cloth step (J)
+    double m_debt = 0.0;                            ///< energy that could not be taken yet (J)
+    std::map<const btRigidBody*, Pushed> m_pushed;  ///< in the last cloth step
 };
 
 }  // namespace cloth

@@ -41,6 +41,10 @@ Vec3 velocityOf(const btRigidBody& body, const Vec3& place) {
     return toVec3(body.getVelocityInLocalPoint(toBullet(Vec3(place - centreOf(body)))));
 }
 
+double kineticEnergy(const Matrix6& mass, const Vector6& motion) {
+    return 0.5 * motion.dot(mass * motion);
+}
+
 double gainOf(const btRigidBody& body, const Vector6& impulse) {
     return impulse.dot(motionOf(body) + 0.5 * solve(massMatrix(body), impulse));
 }

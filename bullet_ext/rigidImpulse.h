@@ -27,6 +27,9 @@ Vector6 motionOf(const btRigidBody& body);
 /// Velocity of a place of the body (m, m/s).
 Vec3 velocityOf(const btRigidBody& body, const Vec3& place);
 
+/// Energy of a motion of this mass (J).
+double kineticEnergy(const Matrix6& mass, const Vector6& motion);
+
 /// Energy (J) that a body gains by an impulse (N s, N m s).
 double gainOf(const btRigidBody& body, const Vector6& impulse);
 
