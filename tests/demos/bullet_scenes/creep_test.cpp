@@ -1,0 +1,65 @@
+// Cloth moves as its velocities say: nothing keeps taking its motion away while gravity moves it,
+// so that it would creep as in honey.
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <string>
+
+#include "bullet_ext/softBodyGarment.h"
+#include "demos/bullet_scenes/scene_solver.h"
+#include "tests/demos/bullet_scenes/print_scene.h"
+
+namespace cloth::creep_test {
+
+namespace {
+
+constexpr int kRate = 60, kSteps = 6 * kRate;
+
+double fastest_node(const btSoftBody& cloth) {
+    double speed = 0.0;
+    for (int i = 0; i < cloth.m_nodes.size(); ++i)
+        speed = std::max(speed, static_cast<double>(cloth.m_nodes[i].m_v.length()));
+    return speed;
+}
+
+/// Part of the steps in which the first cloth of a scene moved, without the velocities for it.
+double creeping_share(const SceneRecipe& recipe) {
+    constexpr double kMoves = 0.02;  // m/s
+    omp_set_num_threads(1);          // small sheets; other tests run beside this one
+    const auto solver = SceneSolvers().make("default", defaults_of(recipe));
+    SceneWorld scene(solver.get());
+    recipe.build(scene);
+    const btSoftBody& cloth = *scene.cloth().front();
+    int creeps = 0;
+    for (int step = 0; step < kSteps; ++step) {
+        const Points before = nodePositions(cloth);
+        scene.step(btScalar(1) / kRate);
+        const double way = (nodePositions(cloth) - before).rowwise().norm().maxCoeff();
+        creeps += way * kRate > kMoves && fastest_node(cloth) < 0.1 * way * kRate;
+    }
+    return static_cast<double>(creeps) / kSteps;
+}
+
+class Creep : public testing::TestWithParam<SceneRecipe> {};
+
+std::vector<SceneRecipe> scenes() {
+    std::vector<SceneRecipe> all = demoSheets();
+    for (const auto& more : {restingScenes(), dynamicScenes()})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+}  // namespace
+
+TEST_P(Creep, ClothMovesAsItsVelocitiesSay) {
+    EXPECT_LT(creeping_share(GetParam()), 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Creep, testing::ValuesIn(scenes()),
+                         [](const testing::TestParamInfo<SceneRecipe>& info) {
+                             return std::string(info.param.name);
+                         });
+
+}  // namespace cloth::creep_test
