@@ -15,7 +15,8 @@ constexpr int directions = 6, field_pairs = fields_count * (fields_count + 1) / 
 struct FieldStiffness {
     DoubleLanes of[field_pairs][directions] = {};
 
-    void add(const DoubleLanes (&fields)[fields_count], const DoubleLanes (&stiffness)[directions]) {
+    void add(const DoubleLanes (&fields)[fields_count],
+             const DoubleLanes (&stiffness)[directions]) {
         int pair = 0;
         for (int i = 0; i < fields_count; ++i)
             for (int j = i; j < fields_count; ++j, ++pair) {
@@ -136,15 +137,18 @@ size_t ContactProduct<Real>::first(size_t part) const {
 template <class Real>
 void ContactProduct<Real>::add_to(size_t part, AffineFields::System& system) const {
     FieldStiffness all;
-    for (const Block& block : m_blocks[part]) {
-        const DoubleLanes row = wide(m_fields + 4 * static_cast<size_t>(block.row));
-        DoubleLanes fields[fields_count], stiffness[directions];
-        // one lane is enough: the others stay zero
-        for (int k = 0; k < fields_count; ++k) fields[k] = DoubleLanes{row[k]};
-        for (int d = 0; d < directions; ++d) {
-            const auto [i, j] = direction_pairs[d];
-            stiffness[d] = DoubleLanes{block.columns[i][j]};
+    const std::vector<Block>& blocks = m_blocks[part];
+    for (size_t k = 0; k < blocks.size(); k += width) {
+        DoubleLanes fields[width] = {}, stiffness[directions] = {};
+        for (size_t lane = 0; lane < width && k + lane < blocks.size(); ++lane) {
+            const Block& block = blocks[k + lane];
+            fields[lane] = wide(m_fields + 4 * static_cast<size_t>(block.row));
+            for (int d = 0; d < directions; ++d) {
+                const auto [i, j] = direction_pairs[d];
+                stiffness[d][lane] = block.columns[i][j];
+            }
         }
+        transpose(fields);
         all.add(fields, stiffness);
     }
     for (size_t k = first(part); k < first(part + 1); ++k) {

@@ -91,7 +91,7 @@ class ContactProduct {
         int row[4][width];
         Real weight[4][width];
         Real normal[3][width];
-        Real along[width], across[width];         ///< stiffness (N/m)
+        Real along[width], across[width];        ///< stiffness (N/m)
         Real field[AffineFields::count][width];  ///< how far each field moves the weighted sum
     };
     using Coordinates = std::array<DoubleLanes, 3>;  ///< x, y and z, a coupling to a lane
