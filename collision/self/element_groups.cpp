@@ -3,8 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
+
+#include "collision/self/eight_lanes.h"
 
 namespace cloth {
 namespace {
@@ -13,21 +14,13 @@ constexpr double rounding = 1e-6;  // of single precision, with room for what is
 constexpr float relative = 1e-5f;  // what single precision leaves of a product of few
 constexpr float far_away = 1e15f;  // m, of lanes without an element: its square is finite
 
-using Lanes = float __attribute__((vector_size(32)));
-using Mask = std::int32_t __attribute__((vector_size(32)));
-using Bytes = std::int8_t __attribute__((vector_size(8)));
-
-Lanes load(const float* values) {
-    Lanes lanes;
-    std::memcpy(&lanes, values, sizeof(lanes));
-    return lanes;
-}
+using Lanes = EightFloats;
 
 Lanes root(const Lanes& squared) {
     Eigen::Array<float, 8, 1, Eigen::DontAlign> array;
     std::memcpy(array.data(), &squared, sizeof(squared));
     array = array.sqrt();
-    return load(array.data());
+    return load_eight(array.data());
 }
 
 Lanes magnitude(const Lanes& a) {
@@ -36,14 +29,6 @@ Lanes magnitude(const Lanes& a) {
 
 Lanes dot(const Lanes (&a)[3], const Lanes (&b)[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-unsigned bits(const Mask& mask) {
-    const Bytes bytes = __builtin_convertvector(mask, Bytes);
-    std::uint64_t wide = 0;
-    std::memcpy(&wide, &bytes, sizeof(wide));
-    // the lowest bits of all bytes, side by side
-    return static_cast<unsigned>(((wide & 0x0101010101010101u) * 0x0102040810204080u) >> 56);
 }
 
 template <size_t lanes>
@@ -150,20 +135,20 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
 unsigned ElementGroups::compare(const Corner& corner, const Discs& discs, Which which) const {
     Lanes to[3], normal[3], drift[3];
     for (int k = 0; k < 3; ++k) {
-        to[k] = corner.at[k] - load(discs.centre[k]);
-        normal[k] = load(discs.normal[k]);
-        drift[k] = corner.motion[k] - load(discs.motion.mean[k]);
+        to[k] = corner.at[k] - load_eight(discs.centre[k]);
+        normal[k] = load_eight(discs.normal[k]);
+        drift[k] = corner.motion[k] - load_eight(discs.motion.mean[k]);
     }
-    const Lanes approach = root(dot(drift, drift)) + load(discs.motion.radius);
-    const Lanes far = (1.0f + 1e-6f) * (m_reach + approach), radius = load(discs.radius);
+    const Lanes approach = root(dot(drift, drift)) + load_eight(discs.motion.radius);
+    const Lanes far = (1.0f + 1e-6f) * (m_reach + approach), radius = load_eight(discs.radius);
     const Lanes squared = dot(to, to), limit = radius + far + m_rounding;
-    Mask found = squared <= limit * limit;
+    EightMasks found = squared <= limit * limit;
     if (which == Which::facing) {
         const Lanes height = dot(to, normal);
         const Lanes beside = (1.0f + relative) * (radius + magnitude(height)) + m_rounding;
         found &= squared - height * height <= beside * beside;
     }
-    return bits(found);
+    return bits_of(found);
 }
 
 /// Near: what the edges extend along the line between their middles is less than these are apart.
@@ -171,27 +156,28 @@ unsigned ElementGroups::compare(const Corner& corner, const Discs& discs, Which 
 unsigned ElementGroups::compare(const Rods& a, int lane, const Rods& b, Which which) const {
     Lanes to[3], first[3], second[3], drift[3];
     for (int k = 0; k < 3; ++k) {
-        to[k] = load(b.middle[k]) - a.middle[k][lane];
+        to[k] = load_eight(b.middle[k]) - a.middle[k][lane];
         first[k] = Lanes{} + a.half[k][lane];
-        second[k] = load(b.half[k]);
-        drift[k] = load(b.motion.mean[k]) - a.motion.mean[k][lane];
+        second[k] = load_eight(b.half[k]);
+        drift[k] = load_eight(b.motion.mean[k]) - a.motion.mean[k][lane];
     }
     const Lanes approach =
-        root(dot(drift, drift)) + (load(b.motion.radius) + a.motion.radius[lane]);
+        root(dot(drift, drift)) + (load_eight(b.motion.radius) + a.motion.radius[lane]);
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach);
     const Lanes squared = dot(to, to), ut = dot(first, to), vt = dot(second, to);
     if (which == Which::near) {
         const Lanes limit = far + m_rounding;
         const Lanes gap = (1.0f - relative) * squared - (magnitude(ut) + magnitude(vt));
-        return bits((gap <= 0.0f) | (gap * gap <= squared * limit * limit));
+        return bits_of((gap <= 0.0f) | (gap * gap <= squared * limit * limit));
     }
-    const Lanes u = Lanes{} + a.length[lane], v = load(b.length), uv = dot(first, second);
+    const Lanes u = Lanes{} + a.length[lane], v = load_eight(b.length), uv = dot(first, second);
     const Lanes limit = u + v + far + m_rounding;
+    const unsigned close = bits_of(squared <= limit * limit);
+    if (close == 0) return 0;
     const Lanes room = relative * limit + m_rounding;  // of `to`
     const Lanes scale = (1.0f + relative) * u * u * v * v - uv * uv;
-    return bits((squared <= limit * limit) &
-                (magnitude(ut * v * v - uv * vt) <= scale + u * v * v * room) &
-                (magnitude(uv * ut - u * u * vt) <= scale + u * u * v * room));
+    return close & bits_of((magnitude(ut * v * v - uv * vt) <= scale + u * v * v * room) &
+                           (magnitude(uv * ut - u * u * vt) <= scale + u * u * v * room));
 }
 
 }  // namespace cloth

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "collision/self/eight_lanes.h"
 #include "collision/self/face_groups.h"
 #include "collision/self/self_elements.h"
 
@@ -83,10 +84,6 @@ class ElementGroups {
     void visit_corners(size_t a, size_t b, Which which, const Visit& visit) const;
     template <typename Visit>
     void visit_edges(size_t a, size_t b, Which which, const Visit& visit) const;
-    template <typename Visit>
-    static void for_each_lane(unsigned bits, const Visit& visit) {
-        for (; bits != 0; bits &= bits - 1) visit(static_cast<size_t>(__builtin_ctz(bits)));
-    }
 
     SelfElements m_elements;
     FaceGroups m_groups;

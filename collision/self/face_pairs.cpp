@@ -1,26 +1,15 @@
 #include "collision/self/face_pairs.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstring>
 #include <limits>
 
 #include "collision/geometry/gather_in_order.h"
+#include "collision/self/eight_lanes.h"
 
 namespace cloth {
 namespace {
 
 constexpr int pairs_at_once = 256;  // of groups, that a thread takes
-
-using Lanes = float __attribute__((vector_size(32)));
-using Mask = std::int32_t __attribute__((vector_size(32)));
-using Bytes = std::int8_t __attribute__((vector_size(8)));
-
-Lanes load(const float* values) {
-    Lanes lanes;
-    std::memcpy(&lanes, values, sizeof(lanes));
-    return lanes;
-}
 
 }  // namespace
 
@@ -51,27 +40,21 @@ void FacePairs::compare(const std::array<int, 2>& groups, float distance,
     const Boxes& a = m_boxes[static_cast<size_t>(groups[0])];
     const Boxes& b = m_boxes[static_cast<size_t>(groups[1])];
     const FaceGroups::Lanes &first = m_groups.faces(groups[0]), &second = m_groups.faces(groups[1]);
-    const Lanes zero = {};
+    const EightFloats zero = {};
     for (size_t i = 0; i < width && first[i] >= 0; ++i) {
-        Mask near = {-1, -1, -1, -1, -1, -1, -1, -1};
+        EightMasks near = {-1, -1, -1, -1, -1, -1, -1, -1};
         for (int k = 0; k < 3; ++k) {
-            const Lanes least = a.least_motion[k][i] - load(b.most_motion[k]);
-            const Lanes most = a.most_motion[k][i] - load(b.least_motion[k]);
-            const Lanes down = least < zero ? least : zero, up = most > zero ? most : zero;
-            near &= (a.low[k][i] + down <= load(b.high[k]) + distance) &
-                    (a.high[k][i] + up >= load(b.low[k]) - distance);
+            const EightFloats least = a.least_motion[k][i] - load_eight(b.most_motion[k]);
+            const EightFloats most = a.most_motion[k][i] - load_eight(b.least_motion[k]);
+            const EightFloats down = least < zero ? least : zero, up = most > zero ? most : zero;
+            near &= (a.low[k][i] + down <= load_eight(b.high[k]) + distance) &
+                    (a.high[k][i] + up >= load_eight(b.low[k]) - distance);
         }
-        // one byte per lane, from the lowest one on
-        const Bytes bytes = __builtin_convertvector(near, Bytes);
-        std::uint64_t bits = 0;
-        std::memcpy(&bits, &bytes, sizeof(bits));
-        if (groups[0] == groups[1])  // each pair once
-            bits &= i + 1 < width ? ~std::uint64_t{0} << (8 * (i + 1)) : 0;
-        while (bits != 0) {
-            const auto lane = static_cast<size_t>(__builtin_ctzll(bits) / 8);
-            bits &= ~(std::uint64_t{0xff} << (8 * lane));
+        unsigned lanes = bits_of(near);
+        if (groups[0] == groups[1]) lanes &= ~1u << i;  // each pair once
+        for_each_lane(lanes, [&](size_t lane) {
             result.push_back({std::min(first[i], second[lane]), std::max(first[i], second[lane])});
-        }
+        });
     }
 }
 

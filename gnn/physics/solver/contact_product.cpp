@@ -78,6 +78,7 @@ void ContactProduct<Real>::take_couplings(const ContactHessian& contacts) {
     m_steps.reserve(most);
     m_motions.reserve(most);
     m_forces.reserve(4 * width * most);
+    m_touches.reserve(4 * width * most);
     m_count = 0;
     m_fours.clear();
     contacts.for_each_coupling([&](const ContactHessian::Coupling& coupling) { put(coupling); });
