@@ -32,8 +32,7 @@ void gather_in_order(int parts, int threads, std::vector<std::vector<Item>>& buf
 /// The same for work(item, out) with item = 0 .. count - 1, of which a thread takes many at once.
 template <typename Item, typename Work>
 void gather_each_in_order(int count, int threads, std::vector<std::vector<Item>>& buffers,
-                          std::vector<Item>& all, const Work& work) {
-    constexpr int items_per_part = 2048;
+                          std::vector<Item>& all, const Work& work, int items_per_part = 2048) {
     const auto work_part = [&](int part, std::vector<Item>& out) {
         const int end = std::min(count, (part + 1) * items_per_part);
         for (int item = part * items_per_part; item < end; ++item) work(item, out);

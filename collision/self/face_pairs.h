@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/geometry/motion_tree.h"
+#include "collision/self/face_groups.h"
 #include "data/core/types.h"
 
 namespace cloth {
@@ -15,8 +15,8 @@ namespace cloth {
 ///     pairs.find(x, motion, 4e-3, threads);
 ///     for (const auto& [f, g] : pairs.found()) { ... may come within 4 mm ... }
 ///
-/// Neighbours are always found. A hierarchy is descended down to groups of up to eight faces; of
-/// two groups that are not apart, all pairs of faces are compared, eight at a time.
+/// Neighbours are always found. Of two groups of faces that come near each other, all pairs of
+/// faces are compared, eight at a time.
 class FacePairs {
  public:
     FacePairs(const Points& rest, const Faces& faces);
@@ -30,33 +30,19 @@ class FacePairs {
     const std::vector<std::array<int, 2>>& found() const { return m_found; }
 
  private:
-    using Task = std::array<int, 2>;
-    static constexpr int group_size = 8;
-    /// The boxes of some faces (see MotionTree::Box), coordinate by coordinate.
-    struct Group {
-        float low[3][group_size], high[3][group_size];
-        float least_motion[3][group_size], most_motion[3][group_size];
-        int face[group_size];
-        int leaf[group_size];  ///< nodes of the tree, -1 where there are fewer faces
+    static constexpr int width = FaceGroups::size;
+    /// The boxes of a group's faces (see MotionTree::Box), coordinate by coordinate.
+    struct Boxes {
+        float low[3][width], high[3][width];
+        float least_motion[3][width], most_motion[3][width];
     };
 
-    void make_groups();
-    void add_leaves(int node, int& count, Group& group) const;
-    void fill(Group& group) const;
-    bool is_group(int node) const { return m_group_of[static_cast<size_t>(node)] >= 0; }
+    void fill(int group);
+    void compare(const std::array<int, 2>& groups, float distance,
+                 std::vector<std::array<int, 2>>& result) const;
 
-    template <typename Emit>
-    void expand(Task task, float distance, const Emit& emit) const;
-    void make_tasks(float distance);
-    void run_task(size_t index, float distance, std::vector<std::array<int, 2>>& result);
-    void compare(Task groups, float distance, std::vector<std::array<int, 2>>& result) const;
-
-    MotionTree m_tree;
-    bool m_is_small;              ///< not worth waking threads for
-    std::vector<int> m_group_of;  ///< of each node; -1: it has more faces, or is below a group
-    std::vector<Group> m_groups;
-    std::vector<Task> m_tasks, m_next_tasks;                 ///< of nodes
-    std::vector<std::vector<Task>> m_stacks;                 ///< per task
+    FaceGroups m_groups;
+    std::vector<Boxes> m_boxes;                              ///< of each group
     std::vector<std::vector<std::array<int, 2>>> m_results;  ///< per task
     std::vector<std::array<int, 2>> m_found;
 };

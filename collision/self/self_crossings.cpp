@@ -49,31 +49,26 @@ bool crosses(const ElementPair& elements, const Points& x0, const Points& motion
 }
 
 SelfCrossings::SelfCrossings(const Garment& garment, FaceParts parts)
-    : m_elements(garment),
-      m_faces(garment.rest().vertices, garment.rest().faces),
-      m_parts_of_faces(std::move(parts)) {
+    : m_groups(garment), m_parts_of_faces(std::move(parts)) {
 }
 
 const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
     m_motion = x1 - x0;
-    m_faces.find(x0, m_motion, touching, threads);
-    m_bounds.update(m_elements, x0, m_motion);
+    m_groups.find(x0, m_motion, touching, threads);
     std::atomic<bool> passed_over = false;
-    const auto& faces = m_faces.found();
     const auto find = [&](int k, std::vector<SelfPair>& out) {
-        const auto& [f, g] = faces[static_cast<size_t>(k)];
-        if (m_parts_of_faces.same(f, g)) return;
-        const float far = (1.0f + 1e-6f) * m_bounds.approach(f, g);
-        m_elements.visit(f, g, [&](const ElementPair& elements) {
-            SelfPair pair;
-            if (!m_bounds.may_be_near(elements, far)) return;
-            if (crosses(elements, x0, m_motion, pair))
-                out.push_back(pair);
-            else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
-                passed_over.store(true, std::memory_order_relaxed);
-        });
+        m_groups.visit(
+            k, ElementGroups::Which::near, [&](const ElementPair& elements, int f, int g) {
+                SelfPair pair;
+                if (m_parts_of_faces.same(f, g)) return;
+                if (crosses(elements, x0, m_motion, pair))
+                    out.push_back(pair);
+                else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
+                    passed_over.store(true, std::memory_order_relaxed);
+            });
     };
-    gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
+    gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_found, find,
+                         ElementGroups::pairs_at_once);
     m_passed_over_none = !passed_over;
     return m_found;
 }

@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "collision/self/element_bounds.h"
-#include "collision/self/face_pairs.h"
 #include "collision/self/self_proximity.h"
 
 namespace cloth {
@@ -30,10 +28,8 @@ class SelfCrossings {
     bool passed_over_none() const { return m_passed_over_none; }
 
  private:
-    SelfElements m_elements;
-    FacePairs m_faces;
+    ElementGroups m_groups;
     FaceParts m_parts_of_faces;
-    ElementBounds m_bounds;
     Points m_motion;  ///< |V| x 3 (m)
     std::vector<SelfPair> m_found;
     std::vector<std::vector<SelfPair>> m_parts;

@@ -32,46 +32,25 @@ inline std::array<Vec3, 4> corners_of(const ElementPair& pair, const Points& x) 
             x.row(pair.vertex[3])};
 }
 
-/// The element pairs of pairs of faces, each element pair once however many faces share it: every
-/// vertex and every edge belongs to one of its faces (Curtis, Tamstorf and Manocha 2008, "Fast
-/// collision detection for deformable models using representative-triangles").
+/// Which elements are whose, so that pairs of faces make each pair of elements once, however many
+/// faces share it: every vertex and every edge is owned by one of its faces (Curtis, Tamstorf and
+/// Manocha 2008, "Fast collision detection for deformable models using representative-triangles").
 class SelfElements {
  public:
     explicit SelfElements(const Garment& garment);
 
-    /// Calls visit(ElementPair) for the pairs of elements that faces f and g own.
-    template <typename Visit>
-    void visit(int f, int g, const Visit& visit) const {
-        visit_vertices(f, g, visit);
-        visit_vertices(g, f, visit);
-        for (const int a : edges_of(f)) {
-            if (a < 0) break;
-            const auto [a0, a1] = m_edges[static_cast<size_t>(a)];
-            for (const int b : edges_of(g)) {
-                if (b < 0) break;
-                const auto [b0, b1] = m_edges[static_cast<size_t>(b)];
-                if ((a0 == b0) | (a0 == b1) | (a1 == b0) | (a1 == b1)) continue;
-                visit(ElementPair{{a0, a1, b0, b1}, {a, b}, true});
-            }
-        }
-    }
-
     /// Edges that face f owns, then -1 where there are fewer than three.
     const std::array<int, 3>& edges_of(int f) const { return m_own_edges[static_cast<size_t>(f)]; }
+
+    /// The vertices, likewise.
+    const std::array<int, 3>& vertices_of(int f) const {
+        return m_own_vertices[static_cast<size_t>(f)];
+    }
 
     const Faces& faces() const { return m_faces; }
     const std::vector<std::array<int, 2>>& edges() const { return m_edges; }
 
  private:
-    template <typename Visit>
-    void visit_vertices(int f, int g, const Visit& visit) const {
-        const int a = m_faces(g, 0), b = m_faces(g, 1), c = m_faces(g, 2);
-        for (const int v : m_own_vertices[static_cast<size_t>(f)]) {
-            if (v < 0) break;
-            if ((v != a) & (v != b) & (v != c)) visit(ElementPair{{v, a, b, c}, {v, g}, false});
-        }
-    }
-
     Faces m_faces;
     std::vector<std::array<int, 2>> m_edges;
     std::vector<std::array<int, 3>> m_own_vertices,

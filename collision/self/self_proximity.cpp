@@ -27,8 +27,7 @@ Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, c
 }  // namespace
 
 SelfProximity::SelfProximity(const Garment& garment, double thickness, FaceParts parts)
-    : m_elements(garment),
-      m_faces(garment.rest().vertices, garment.rest().faces),
+    : m_groups(garment),
       m_regions(garment),
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
@@ -58,20 +57,17 @@ bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const 
 }
 
 void SelfProximity::find(const Points& x, const Points& motion, double reach, int threads) {
-    m_faces.find(x, motion, reach, threads);
-    m_bounds.update(m_elements, x, motion);
-    const auto& faces = m_faces.found();
+    m_groups.find(x, motion, reach, threads);
     const auto find = [&](int k, std::vector<SelfPair>& out) {
-        const auto [f, g] = faces[static_cast<size_t>(k)];
-        if (m_parts_of_faces.same(f, g)) return;
-        const float far = (1.0f + 1e-6f) * (static_cast<float>(reach) + m_bounds.approach(f, g));
-        m_elements.visit(f, g, [&](const ElementPair& elements) {
-            SelfPair pair;
-            if (m_bounds.may_face(elements, far) && is_near(elements, x, motion, reach, pair))
-                out.push_back(pair);
-        });
+        m_groups.visit(
+            k, ElementGroups::Which::facing, [&](const ElementPair& elements, int f, int g) {
+                SelfPair pair;
+                if (!m_parts_of_faces.same(f, g) && is_near(elements, x, motion, reach, pair))
+                    out.push_back(pair);
+            });
     };
-    gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_pairs, find);
+    gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_pairs, find,
+                         ElementGroups::pairs_at_once);
 }
 
 }  // namespace cloth

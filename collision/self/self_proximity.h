@@ -2,11 +2,9 @@
 
 #include <vector>
 
-#include "collision/self/element_bounds.h"
-#include "collision/self/face_pairs.h"
+#include "collision/self/element_groups.h"
 #include "collision/self/face_parts.h"
 #include "collision/self/offset_regions.h"
-#include "collision/self/self_elements.h"
 
 namespace cloth {
 
@@ -59,9 +57,7 @@ class SelfProximity {
                  SelfPair& pair) const;
     bool near_at_rest(const ElementPair& elements) const;
 
-    SelfElements m_elements;
-    FacePairs m_faces;
-    ElementBounds m_bounds;
+    ElementGroups m_groups;
     OffsetRegions m_regions;
     Points m_rest;             ///< |V| x 3 (m)
     std::vector<int> m_piece;  ///< |V|: connected piece

@@ -9,14 +9,16 @@ void LayerFriction::begin_step(const SelfContactEnergy& contact, const Points& x
     m_sliders.clear();
     m_slip = slip;
     if (!(contact.friction() > 0.0)) return;
-    for (const SelfContactEnergy::Pair& pair : contact.pairs()) {
+    for (size_t index = 0; index < contact.pairs().size(); ++index) {
+        const SelfContactEnergy::Pair& pair = contact.pairs()[index];
         const double depth = contact.thickness() - pair.start;
         if (!(depth > 0.0)) continue;
         const double pressed =
             std::min(3.0 * pair.stiffness * depth * depth, force_per_mass * pair.mass);
         if (!(pressed > 0.0)) continue;
-        Slider slider{pair.vertex, pair.weight, pair.normal, Vec3::Zero(),
-                      contact.friction() * pressed};
+        Slider slider{
+            pair.vertex, pair.weight, pair.normal, Vec3::Zero(), contact.friction() * pressed,
+            index};
         for (size_t k = 0; k < 4; ++k)
             slider.start += pair.weight[k] * x.row(pair.vertex[k]).transpose();
         m_sliders.push_back(slider);

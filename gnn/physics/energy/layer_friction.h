@@ -26,6 +26,7 @@ class LayerFriction {
         Vec3 normal;
         Vec3 start;    ///< sum of weight x at t (m)
         double force;  ///< mu N (N)
+        size_t pair;   ///< index in SelfContactEnergy::pairs()
 
         /// u_p (m)
         Vec3 slip(const Points& x) const {

@@ -29,7 +29,6 @@ void ContactHessian::begin_step(const IncrementalPotential& potential,
         m_ridges.push_back(ridge);
     }
     begin_self_contact(potential.self_contact(), row_of);
-    begin_layer_friction(potential.layer_friction(), row_of);
     m_goals.begin_step(potential.goals(), row_of);
 }
 
@@ -84,20 +83,6 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
     }
 }
 
-void ContactHessian::begin_layer_friction(const LayerFriction& friction,
-                                          const std::vector<int>& row_of) {
-    m_layer_sliders.clear();
-    for (const LayerFriction::Slider& slider : friction.sliders()) {
-        LayerSlider layer{{}, slider.weight, slider.normal};
-        for (size_t k = 0; k < 4; ++k) {
-            layer.row[k] = row_of[static_cast<size_t>(slider.vertex[k])];
-            // what does not move has no part in the blocks
-            if (layer.row[k] < 0) layer.row[k] = 0, layer.weight[k] = 0.0;
-        }
-        m_layer_sliders.push_back(layer);
-    }
-}
-
 double ContactHessian::SelfContact::along(const Points& direction) const {
     const auto at = [&](size_t k) { return weight[k] * direction.row(row[k]); };
     return (at(0) + at(1) + at(2) + at(3)).dot(normal.transpose());
@@ -125,13 +110,11 @@ void ContactHessian::linearise(const IncrementalPotential& potential, const Poin
         m_sliders[k].stiffness = slider.force / smooth;
         m_sliders[k].yielding = std::sqrt(m_sliders[k].stiffness) / smooth * slip;
     }
-    const LayerFriction& layers = potential.layer_friction();
-    for (size_t k = 0; k < m_layer_sliders.size(); ++k) {
-        const LayerFriction::Slider& slider = layers.sliders()[k];
-        m_layer_sliders[k].stiffness = slider.force / layers.smoothed(slider.slip(x));
-    }
     if (m_goals.active()) m_goals.linearise(x);
     if (m_self_contacts.empty()) return;
+    const LayerFriction& layers = potential.layer_friction();
+    for (const LayerFriction::Slider& slider : layers.sliders())
+        m_self_contacts[slider.pair].friction = slider.force / layers.smoothed(slider.slip(x));
     m_from = x;
     for (size_t k = 0; k < m_self_contacts.size(); ++k) {
         SelfContact& contact = m_self_contacts[k];
@@ -146,7 +129,7 @@ double ContactHessian::secant(double weight, double before, double after) {
 }
 
 bool ContactHessian::anticipate(const Points& step) {
-    bool any = !m_sliders.empty() || !m_layer_sliders.empty();
+    bool any = !m_sliders.empty();
     for (Contact& contact : m_contacts) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - step.row(contact.row).dot(contact.normal);
@@ -166,7 +149,7 @@ bool ContactHessian::anticipate(const Points& step) {
         const double before = std::max(contact.depth, 0.0);
         const double after = contact.depth - contact.along(step);
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
-        any = any || contact.stiffness > 0.0;
+        any = any || contact.stiffness > 0.0 || contact.friction > 0.0;
     }
     if (m_goals.active()) m_goals.anticipate(step);
     gather_blocks();
@@ -212,7 +195,9 @@ void ContactHessian::add_product(const Points& direction, Points& product) const
         Vec3 motion = Vec3::Zero();
         for (size_t k = 0; k < 4; ++k)
             motion += coupling.weight[k] * direction.row(coupling.row[k]).transpose();
-        const Vec3 force = coupling.stiffness * motion;
+        const double apart = coupling.normal.dot(motion);
+        const Vec3 force =
+            coupling.across * motion + (coupling.along - coupling.across) * apart * coupling.normal;
         for (size_t k = 0; k < 4; ++k)
             product.row(coupling.row[k]) += coupling.weight[k] * force.transpose();
     });

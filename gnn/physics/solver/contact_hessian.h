@@ -55,18 +55,18 @@ class ContactHessian {
     struct Coupling {
         std::array<int, 4> row;        ///< 0 for a pin
         std::array<double, 4> weight;  ///< 0 for a pin
-        Stiffness stiffness;
+        Vec3 normal;
+        double along;   ///< stiffness along the normal (N/m)
+        double across;  ///< (N/m)
     };
-    /// visit(coupling) for ridges, layers that slide and self-contact, always in the same order.
+    /// visit(coupling) for ridges and for self-contact with its friction, always in the same order.
     template <class Visit>
     void for_each_coupling(const Visit& visit) const;
     /// No more than these are visited before the next begin_step().
-    size_t most_couplings() const {
-        return m_ridges.size() + m_layer_sliders.size() + m_self_contacts.size();
-    }
+    size_t most_couplings() const { return m_ridges.size() + m_self_contacts.size(); }
 
     /// product += (blocks and couplings) * direction (free, n x 3), slow and obvious: solves go
-    /// through ContactShares.
+    /// through ContactProduct.
     void add_product(const Points& direction, Points& product) const;
 
     /// Moves vertices of `trial` (|V| x 3) that are too deep out along the normal, and those that
@@ -77,7 +77,7 @@ class ContactHessian {
     /// goals.
     bool active() const {
         return !m_contacts.empty() || !m_ridges.empty() || !m_sliders.empty() ||
-               !m_self_contacts.empty() || !m_layer_sliders.empty() || m_goals.active();
+               !m_self_contacts.empty() || m_goals.active();
     }
 
  private:
@@ -103,12 +103,6 @@ class ContactHessian {
         double stiffness = 0.0;        ///< across the slip (N/m)
         Vec3 yielding = Vec3::Zero();  ///< y: along the slip it is less, by y y'
     };
-    struct LayerSlider {
-        std::array<int, 4> row;        ///< 0 for a pin
-        std::array<double, 4> weight;  ///< 0 for a pin
-        Vec3 normal;
-        double stiffness = 0.0;  ///< (N/m)
-    };
 
     struct SelfContact {
         std::array<int, 4> row;        ///< 0 for a pin
@@ -117,12 +111,12 @@ class ContactHessian {
         double pair_weight;      ///< w of this pair (N/m^2)
         double depth = 0.0;      ///< (m)
         double stiffness = 0.0;  ///< (N/m)
+        double friction = 0.0;   ///< stiffness across the normal (N/m)
 
         double along(const Points& direction) const;  ///< of a free array (n x 3)
     };
     void begin_vertices(const IncrementalPotential& potential, const std::vector<int>& row_of);
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
-    void begin_layer_friction(const LayerFriction& friction, const std::vector<int>& row_of);
     void gather_blocks();
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
@@ -134,7 +128,6 @@ class ContactHessian {
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
-    std::vector<LayerSlider> m_layer_sliders;  ///< its layer_friction().sliders()
     std::vector<Block> m_blocks;
     bool m_anticipated = false;
     const SelfContactEnergy* m_self = nullptr;
@@ -145,29 +138,17 @@ class ContactHessian {
 template <class Visit>
 void ContactHessian::for_each_coupling(const Visit& visit) const {
     if (!m_anticipated) return;
-    Coupling coupling;
-    const auto show = [&](const Vec3& normal, double along, double across) {
-        coupling.stiffness = {};
-        coupling.stiffness.add(normal, along, across);
-        visit(static_cast<const Coupling&>(coupling));
-    };
-    for (const Ridge& ridge : m_ridges) {
-        if (!(ridge.stiffness > 0.0)) continue;
-        coupling.row = {ridge.row[0], ridge.row[1], ridge.row[2], 0};
-        coupling.weight = {ridge.weight[0], ridge.weight[1], ridge.weight[2], 0.0};
-        show(ridge.normal, ridge.stiffness, 0.0);
-    }
-    for (const LayerSlider& slider : m_layer_sliders) {
-        coupling.row = slider.row;
-        coupling.weight = slider.weight;
-        show(slider.normal, 0.0, slider.stiffness);
-    }
-    for (const SelfContact& contact : m_self_contacts) {
-        if (!(contact.stiffness > 0.0)) continue;
-        coupling.row = contact.row;
-        coupling.weight = contact.weight;
-        show(contact.normal, contact.stiffness, 0.0);
-    }
+    for (const Ridge& ridge : m_ridges)
+        if (ridge.stiffness > 0.0)
+            visit(Coupling{{ridge.row[0], ridge.row[1], ridge.row[2], 0},
+                           {ridge.weight[0], ridge.weight[1], ridge.weight[2], 0.0},
+                           ridge.normal,
+                           ridge.stiffness,
+                           0.0});
+    for (const SelfContact& contact : m_self_contacts)
+        if (contact.stiffness > 0.0 || contact.friction > 0.0)
+            visit(Coupling{contact.row, contact.weight, contact.normal, contact.stiffness,
+                           contact.friction});
 }
 
 }  // namespace cloth

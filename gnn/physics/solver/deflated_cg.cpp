@@ -20,17 +20,17 @@ template <class Real>
 void DeflatedCg<Real>::solve(const ContactHessian& contacts, AffineCorrection* affine,
                              int iterations, Points& out) {
     allocate();
-    for (auto& shares : m_shares) shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
+    m_contacts.take(contacts, m_factor->part_of(), m_fields.data());
     out.resize(m_step.rows(), 3);
     const int threads = m_factor->threads();
 #pragma omp parallel num_threads(threads) if (threads > 1)
-    iterate(Crew(), contacts, affine, iterations, out);
+    iterate(Crew(), affine, iterations, out);
 }
 
 template <class Real>
-void DeflatedCg<Real>::iterate(const Crew& crew, const ContactHessian& contacts,
-                               AffineCorrection* affine, int iterations, Points& out) {
-    crew.for_parts([&](size_t part) { prepare(part, contacts, affine != nullptr); });
+void DeflatedCg<Real>::iterate(const Crew& crew, AffineCorrection* affine, int iterations,
+                               Points& out) {
+    crew.for_parts([&](size_t part) { prepare(part, affine != nullptr); });
     Crew::wait();
     double power = total(&Sums::power);
     const double enough = 1e-6 * power;  // a few contacts are solved before the iterations end
@@ -46,6 +46,9 @@ void DeflatedCg<Real>::iterate(const Crew& crew, const ContactHessian& contacts,
         crew.for_parts([&](size_t part) { advance(part, 1.0, c); });
         precondition(crew, true);
         power = total(&Sums::power);
+    } else {
+        crew.for_parts([&](size_t part) { m_contacts.find_motions(part, m_work.data()); });
+        Crew::wait();
     }
     double beta = 0.0, step = 0.0;
     for (int k = 0; power > enough; ++k) {
@@ -69,6 +72,7 @@ void DeflatedCg<Real>::iterate(const Crew& crew, const ContactHessian& contacts,
 template <class Real>
 void DeflatedCg<Real>::precondition(const Crew& crew, bool deflated) {
     m_factor->solve(crew, m_work.data());
+    Crew::wait();  // motions of couplings are those of rows in several parts
     crew.for_parts([&](size_t part) { measure(part, deflated); });
     Crew::wait();
 }
@@ -76,17 +80,15 @@ void DeflatedCg<Real>::precondition(const Crew& crew, bool deflated) {
 /// d . A d. F' p_d is zero, since p_d is a sum of residuals.
 template <class Real>
 double DeflatedCg<Real>::curvature(const AffineCorrection* affine, const Coefficients& c) const {
-    return total(&Sums::curvature) + ContactShares<Real>::curvature_between(m_shares) +
-           (m_deflated ? affine->energy(c) : 0.0);
+    return total(&Sums::curvature) + (m_deflated ? affine->energy(c) : 0.0);
 }
 
-/// Packs the blocks, sets the answer to zero and adds up what b tells.
+/// Sets the answer to zero and adds up what b tells.
 template <class Real>
-void DeflatedCg<Real>::prepare(size_t part, const ContactHessian& contacts, bool deflated) {
+void DeflatedCg<Real>::prepare(size_t part, bool deflated) {
     Sums& sums = m_sums[part];
-    m_shares[part].take(contacts, part, m_factor->part_of(), m_fields.data());
     sums.system.setZero();
-    if (deflated) m_shares[part].add_to(m_fields.data(), sums.system);
+    if (deflated) m_contacts.add_to(part, sums.system);
     DoubleLanes moments[AffineFields::count] = {};
     sums.power = sum_rows(part, [&](size_t row) -> Lanes<Real> {
         const Lanes<Real> r = load(m_residual.data() + 4 * row);
@@ -106,17 +108,18 @@ template <class Real>
 void DeflatedCg<Real>::measure(size_t part, bool deflated) {
     Sums& sums = m_sums[part];
     sums.power = power_of(part);
+    m_contacts.find_motions(part, m_work.data());
     if (!deflated) return;
     for (auto& row : sums.moments) store(row, DoubleLanes{});
-    m_shares[part].add_moments(m_fields.data(), m_work.data(), sums.moments);
+    m_contacts.add_moments(part, m_work.data(), sums.moments);
 }
 
 /// d = 0: all of the direction is affine.
 template <class Real>
 void DeflatedCg<Real>::turn_affinely(size_t part, const Coefficients& c) {
     for_rows(part, [&](size_t row) { store<Real>(m_work.data() + 4 * row, Lanes<Real>{}); });
-    m_shares[part].add_product(m_fields.data(), FieldRows<double>(c), m_direction.data(),
-                               m_work.data());
+    m_contacts.stand_still(part);
+    m_contacts.add_product(part, 0.0, c, m_direction.data(), m_work.data());
 }
 
 /// d = z + beta d; c is so that A (d - F c) has no affine part. The direction before has none, nor
@@ -136,21 +139,20 @@ void DeflatedCg<Real>::turn(size_t part, double beta, const Coefficients& c) {
         return direction * product;
     });
     m_sums[part].curvature =
-        by_p + m_shares[part].add_product(m_fields.data(), FieldRows<double>(c), m_direction.data(),
-                                          m_work.data());
+        by_p + m_contacts.add_product(part, beta, c, m_direction.data(), m_work.data());
 }
 
 /// x += step d, r -= step A (d - F c), without the affine part of x.
 template <class Real>
 void DeflatedCg<Real>::advance(size_t part, double step, const Coefficients& c) {
-    m_shares[part].add_product_between(m_shares, m_work.data());
     const auto scale = static_cast<Real>(step);
     const FieldRows<Real> rows(c);
     for_rows(part, [&](size_t row) {
         double* const x = m_solution.data() + 4 * row;
         Real* const r = m_residual.data() + 4 * row;
         Real* const work = m_work.data() + 4 * row;
-        const Lanes<Real> product = load(work) - rows.at(m_p_fields.data() + 4 * row);
+        const Lanes<Real> product =
+            (load(work) + m_contacts.force(row)) - rows.at(m_p_fields.data() + 4 * row);
         const Lanes<Real> residual = load(r) - scale * product;
         store(x, load(x) + step * widened(load(m_direction.data() + 4 * row)));
         store<Real>(r, residual);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gnn/physics/solver/affine_correction.h"
-#include "gnn/physics/solver/contact_shares.h"
+#include "gnn/physics/solver/contact_product.h"
 #include "gnn/physics/solver/preconditioned_rows.h"
 
 namespace cloth {
@@ -43,18 +43,17 @@ class DeflatedCg : public PreconditionedRows<Real> {
     struct alignas(64) Sums {
         double power;      ///< r . z
         double curvature;  ///< d . A d, without what affine displacements add by P
-        typename ContactShares<Real>::Moments moments;
+        typename ContactProduct<Real>::Moments moments;
         AffineFields::System system;  ///< F' blocks F
     };
 
     // All threads of a crew go through these together.
-    void iterate(const Crew& crew, const ContactHessian& contacts, AffineCorrection* affine,
-                 int iterations, Points& out);
+    void iterate(const Crew& crew, AffineCorrection* affine, int iterations, Points& out);
     void precondition(const Crew& crew, bool deflated);
     double curvature(const AffineCorrection* affine, const Coefficients& c) const;
 
     // These are about one part of the rows.
-    void prepare(size_t part, const ContactHessian& contacts, bool deflated);
+    void prepare(size_t part, bool deflated);
     void measure(size_t part, bool deflated);
     void turn_affinely(size_t part, const Coefficients& c);
     void turn(size_t part, double beta, const Coefficients& c);
@@ -69,7 +68,7 @@ class DeflatedCg : public PreconditionedRows<Real> {
     std::vector<Real> m_fields, m_p_fields;  ///< n x 4: F, P F
     std::vector<double> m_solution;  ///< n x 4: rounded, it would not be what the residual is of
     std::vector<Real> m_direction, m_p_direction;  ///< n x 4
-    typename ContactShares<Real>::Parts m_shares;
+    ContactProduct<Real> m_contacts;
     std::array<Sums, Crew::parts> m_sums;
     bool m_deflated = false;
 };

@@ -4,8 +4,7 @@ namespace cloth {
 
 template <class Real>
 void HessianCg<Real>::allocate() {
-    for (std::vector<Real>* array : {&m_direction, &m_product, &m_fields})
-        array->resize(lanes(), Real(0));
+    for (std::vector<Real>* array : {&m_direction, &m_product}) array->resize(lanes(), Real(0));
     m_solution.resize(lanes(), 0.0);
 }
 
@@ -13,19 +12,18 @@ template <class Real>
 void HessianCg<Real>::solve(FabricHessian<Real>& hessian, const Points& at,
                             const ContactHessian& contacts, int iterations, Points& out) {
     allocate();
-    for (auto& shares : m_shares) shares.reserve(contacts, static_cast<size_t>(m_factor->size()));
+    m_contacts.take(contacts, m_factor->part_of(), nullptr);
     out.resize(m_step.rows(), 3);
     const int threads = m_factor->threads();
 #pragma omp parallel num_threads(threads) if (threads > 1)
-    iterate(Crew(), hessian, at, contacts, iterations, out);
+    iterate(Crew(), hessian, at, iterations, out);
 }
 
 template <class Real>
 void HessianCg<Real>::iterate(const Crew& crew, FabricHessian<Real>& hessian, const Points& at,
-                              const ContactHessian& contacts, int iterations, Points& out) {
+                              int iterations, Points& out) {
     crew.for_halves([&](size_t half) { hessian.linearise_faces(half, at); });
     crew.for_parts([&](size_t part) {
-        m_shares[part].take(contacts, part, m_factor->part_of(), m_fields.data());
         for_rows(part, [&](size_t row) {
             store<Real>(m_direction.data() + 4 * row, load(m_work.data() + 4 * row));
             store(m_solution.data() + 4 * row, DoubleLanes{});
@@ -41,8 +39,7 @@ void HessianCg<Real>::iterate(const Crew& crew, FabricHessian<Real>& hessian, co
         Crew::wait();
         crew.for_parts([&](size_t part) { multiply(part, hessian); });
         Crew::wait();
-        const double step = power_now / (total(&Sums::curvature) +
-                                         ContactShares<Real>::curvature_between(m_shares));
+        const double step = power_now / total(&Sums::curvature);
         crew.for_parts([&](size_t part) { advance(part, step); });
         if (k + 1 == iterations) break;
         m_factor->solve(crew, m_work.data());
@@ -72,21 +69,21 @@ void HessianCg<Real>::multiply(size_t part, const FabricHessian<Real>& hessian) 
         store<Real>(m_product.data() + 4 * row, product);
         return load(m_direction.data() + 4 * row) * product;
     });
-    static const FieldRows<double> none(AffineFields::Coefficients::Zero());
+    m_contacts.find_motions(part, m_direction.data());
     m_sums[part].curvature =
-        by_fabric +
-        m_shares[part].add_product(m_fields.data(), none, m_direction.data(), m_product.data());
+        by_fabric + m_contacts.add_product(part, 0.0, AffineFields::Coefficients::Zero(),
+                                           m_direction.data(), m_product.data());
 }
 
 /// x += step d, r -= step A d.
 template <class Real>
 void HessianCg<Real>::advance(size_t part, double step) {
-    m_shares[part].add_product_between(m_shares, m_product.data());
     const auto scale = static_cast<Real>(step);
     for_rows(part, [&](size_t row) {
         double* const x = m_solution.data() + 4 * row;
         Real* const r = m_residual.data() + 4 * row;
-        const Lanes<Real> residual = load(r) - scale * load(m_product.data() + 4 * row);
+        const Lanes<Real> product = load(m_product.data() + 4 * row) + m_contacts.force(row);
+        const Lanes<Real> residual = load(r) - scale * product;
         store(x, load(x) + step * widened(load(m_direction.data() + 4 * row)));
         store<Real>(r, residual);
         store<Real>(m_work.data() + 4 * row, residual);

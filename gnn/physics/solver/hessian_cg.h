@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "gnn/physics/solver/contact_shares.h"
+#include "gnn/physics/solver/contact_product.h"
 #include "gnn/physics/solver/fabric_hessian.h"
 #include "gnn/physics/solver/preconditioned_rows.h"
 
@@ -36,8 +36,8 @@ class HessianCg : public PreconditionedRows<Real> {
     };
 
     // All threads of a crew go through these together.
-    void iterate(const Crew& crew, FabricHessian<Real>& hessian, const Points& at,
-                 const ContactHessian& contacts, int iterations, Points& out);
+    void iterate(const Crew& crew, FabricHessian<Real>& hessian, const Points& at, int iterations,
+                 Points& out);
 
     // These are about one part of the rows.
     void multiply(size_t part, const FabricHessian<Real>& hessian);
@@ -48,8 +48,7 @@ class HessianCg : public PreconditionedRows<Real> {
 
     std::vector<double> m_solution;            ///< n x 4
     std::vector<Real> m_direction, m_product;  ///< n x 4
-    std::vector<Real> m_fields;                ///< n x 4: none are deflated
-    typename ContactShares<Real>::Parts m_shares;
+    ContactProduct<Real> m_contacts;
     std::array<Sums, Crew::parts> m_sums;
 };
 

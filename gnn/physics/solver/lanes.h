@@ -36,4 +36,16 @@ inline double sum(const DoubleLanes& v) {
     return (v[0] + v[1]) + (v[2] + v[3]);
 }
 
+/// Rows become columns.
+inline void transpose(DoubleLanes (&rows)[4]) {
+    const DoubleLanes low01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
+    const DoubleLanes high01 = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+    const DoubleLanes low23 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
+    const DoubleLanes high23 = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+    rows[0] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
+    rows[1] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
+    rows[2] = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
+    rows[3] = __builtin_shufflevector(high01, high23, 2, 3, 6, 7);
+}
+
 }  // namespace cloth

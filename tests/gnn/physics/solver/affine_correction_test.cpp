@@ -100,10 +100,11 @@ TEST(AffineCorrection, TheBlocksOnFieldsAreThoseOfTheirProducts) {
     AffineFields fields;
     fields.take(pressed.free);
     AffineFields::System system = AffineFields::System::Zero();
-    ContactShares<double> shares;
+    ContactProduct<double> contacts;
     const std::vector<unsigned char> part_of(static_cast<size_t>(pressed.free.rows()), 0);
-    shares.take(pressed.contacts, 0, part_of, fields.columns().data());
-    shares.add_to(fields.columns().data(), system);
+    contacts.take(pressed.contacts, part_of, fields.columns().data());
+    contacts.add_to(0, system);
+    contacts.add_to(1, system);
     for (int column = 0; column < system.cols(); ++column) {
         AffineFields::Coefficients unit = AffineFields::Coefficients::Zero();
         unit(column / 3, column % 3) = 1.0;

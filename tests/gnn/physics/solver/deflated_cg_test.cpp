@@ -223,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(Fabrics, DeflatedCgOfFabrics,
                              return "Fabric" + std::to_string(fabric.index);
                          });
 
-TEST(ContactShares, OfPartsAddUpToTheBlocks) {
+TEST(ContactProduct, OfPartsAddUpToTheBlocks) {
     Layers scene(9, Fabric::real_cotton(), 5);
     scene.solve(1);
     const Eigen::Index count = scene.matrix.free_count();
@@ -244,18 +244,18 @@ TEST(ContactShares, OfPartsAddUpToTheBlocks) {
     const std::vector<double> direction = lanes_of(u);
     std::vector<double> product = lanes_of(Points::Zero(count, 3));
     AffineFields::System system = AffineFields::System::Zero();
-    ContactShares<double>::Parts shares;
-    ContactShares<double>::Moments moments = {};
+    ContactProduct<double> contacts;
+    ContactProduct<double>::Moments moments = {};
+    contacts.take(scene.contacts, part_of, fields.columns().data());
     double curvature = 0.0;
     for (size_t part = 0; part < Crew::parts; ++part) {
-        shares[part].take(scene.contacts, part, part_of, fields.columns().data());
-        shares[part].add_to(fields.columns().data(), system);
-        shares[part].add_moments(fields.columns().data(), direction.data(), moments);
-        curvature += shares[part].add_product(fields.columns().data(), FieldRows<double>(c),
-                                              direction.data(), product.data());
+        contacts.add_to(part, system);
+        contacts.find_motions(part, direction.data());
+        contacts.add_moments(part, direction.data(), moments);
+        curvature += contacts.add_product(part, 0.0, c, direction.data(), product.data());
     }
-    curvature += ContactShares<double>::curvature_between(shares);
-    for (const auto& part : shares) part.add_product_between(shares, product.data());
+    for (size_t row = 0; row < part_of.size(); ++row)
+        store(product.data() + 4 * row, load(product.data() + 4 * row) + contacts.force(row));
 
     Points expected = Points::Zero(count, 3), of_u = expected;
     scene.contacts.add_product(moved, expected);

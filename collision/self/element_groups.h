@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "collision/self/eight_lanes.h"
+#include "collision/self/face_groups.h"
+#include "collision/self/self_elements.h"
+
+namespace cloth {
+
+/// Pairs of elements of one mesh that may be near each other while its vertices move along straight
+/// lines. Of groups of faces that come near each other, the elements are compared eight at a time,
+/// by the spheres around them and around their motions: in single precision, with room for what
+/// that rounds off.
+///
+///     ElementGroups groups(garment);
+///     groups.find(x, motion, reach, threads);
+///     for (int k = 0; k < groups.found(); ++k)
+///         groups.visit(k, ElementGroups::Which::near, [&](const ElementPair& pair, int f, int g) {
+///             ... elements of faces f and g may come within reach ...
+///         });
+class ElementGroups {
+ public:
+    explicit ElementGroups(const Garment& garment);
+
+    /// @param x, motion  |V| x 3 (m)  @param reach  (m)  @param threads  0: as many as OpenMP gives
+    void find(const Points& x, const Points& motion, double reach, int threads);
+    /// Pairs of groups, in an order that depends on the arguments of find() alone.
+    int found() const { return static_cast<int>(m_groups.found().size()); }
+
+    /// near: pairs that may come within reach; facing: of these, those that may face each other at
+    /// x, see ClosestPoints.
+    enum class Which { near, facing };
+
+    /// Calls visit(pair, f, g) for a superset of such pairs of the k-th pair of groups. They share
+    /// no vertex. The first element is owned by face f, the second by g, or is g itself. Over all k
+    /// each pair comes once.
+    template <typename Visit>
+    void visit(int k, Which which, const Visit& visit) const;
+
+    static constexpr int pairs_at_once = 64;  ///< pairs of groups that a thread should take at once
+    /// How many threads a search is worth, where so many are allowed.
+    int worthwhile(int threads) const { return m_groups.worthwhile(threads); }
+
+ private:
+    static constexpr int width = FaceGroups::size;
+    /// A sphere around the motions of each element's points (m).
+    struct Motions {
+        float mean[3][width], radius[width];
+    };
+    /// The faces of a group; lanes without one are far from all.
+    struct Discs {
+        float centre[3][width], normal[3][width];  ///< unit
+        float radius[width];
+        Motions motion;
+        FaceGroups::Lanes face;
+    };
+    /// Eight edges of a group; lanes without one are far from all.
+    struct Rods {
+        float middle[3][width], half[3][width];  ///< from there to an end
+        float length[width];                     ///< of the half
+        Motions motion;
+        std::array<int, width> edge, face;  ///< -1: none
+    };
+    /// A vertex.
+    struct Corner {
+        float at[3], motion[3];
+        int vertex, face;
+    };
+    /// First of a group's corners, or rods.
+    struct Begin {
+        size_t corner, rods;
+    };
+
+    void make_groups();
+    void update(const Points& x, const Points& motion);
+    void update(const Points& x, const Points& motion, const Vec3& origin, Discs& discs) const;
+    void update(const Points& x, const Points& motion, const Vec3& origin, Rods& rods) const;
+    // A bit for each lane.
+    unsigned compare(const Corner& corner, const Discs& discs, Which which) const;
+    unsigned compare(const Rods& a, int lane, const Rods& b, Which which) const;
+    template <typename Visit>
+    void visit_corners(size_t a, size_t b, Which which, const Visit& visit) const;
+    template <typename Visit>
+    void visit_edges(size_t a, size_t b, Which which, const Visit& visit) const;
+
+    SelfElements m_elements;
+    FaceGroups m_groups;
+    std::vector<Begin> m_begin;  ///< groups + 1
+    std::vector<Discs> m_discs;  ///< of each group
+    std::vector<Rods> m_rods;
+    std::vector<Corner> m_corners;
+    float m_reach = 0.0f;     ///< (m)
+    float m_rounding = 0.0f;  ///< of a difference of coordinates (m)
+};
+
+template <typename Visit>
+void ElementGroups::visit(int k, Which which, const Visit& visit) const {
+    const auto& pair = m_groups.found()[static_cast<size_t>(k)];
+    const auto a = static_cast<size_t>(pair[0]), b = static_cast<size_t>(pair[1]);
+    visit_corners(a, b, which, visit);
+    if (a != b) visit_corners(b, a, which, visit);
+    visit_edges(a, b, which, visit);
+}
+
+template <typename Visit>
+void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& visit) const {
+    const Discs& discs = m_discs[b];
+    for (size_t c = m_begin[a].corner; c < m_begin[a + 1].corner; ++c) {
+        const Corner& corner = m_corners[c];
+        for_each_lane(compare(corner, discs, which), [&](size_t lane) {
+            const int v = corner.vertex, g = discs.face[lane];
+            const auto at = m_elements.faces().row(g);
+            if ((v != at[0]) & (v != at[1]) & (v != at[2]))
+                visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corner.face, g);
+        });
+    }
+}
+
+template <typename Visit>
+void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& visit) const {
+    const auto& edges = m_elements.edges();
+    for (size_t r = m_begin[a].rods; r < m_begin[a + 1].rods; ++r)
+        for (size_t i = 0; i < width && m_rods[r].edge[i] >= 0; ++i) {
+            const int first = m_rods[r].edge[i];
+            const auto [a0, a1] = edges[static_cast<size_t>(first)];
+            for (size_t s = a == b ? r : m_begin[b].rods; s < m_begin[b + 1].rods; ++s) {
+                unsigned lanes = compare(m_rods[r], static_cast<int>(i), m_rods[s], which);
+                if (r == s) lanes &= ~1u << i;  // each pair once
+                for_each_lane(lanes, [&, a0 = a0, a1 = a1](size_t lane) {
+                    const int second = m_rods[s].edge[lane];
+                    const auto [b0, b1] = edges[static_cast<size_t>(second)];
+                    if ((a0 != b0) & (a0 != b1) & (a1 != b0) & (a1 != b1))
+                        visit(ElementPair{{a0, a1, b0, b1}, {first, second}, true},
+                              m_rods[r].face[i], m_rods[s].face[lane]);
+                });
+            }
+        }
+}
+
+}  // namespace cloth
