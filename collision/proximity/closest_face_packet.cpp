@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "collision/proximity/closest_face_tree.h"
-#include "collision/proximity/eight_lanes.h"
+#include "collision/proximity/eight_boxes.h"
 #include "data/core/triangle.h"
 
 // Neighbouring points visit nearly the same nodes and faces, so they are searched for together: a
@@ -177,10 +177,10 @@ struct ClosestFaceTree::Packet {
 
     /// Whether the box of a child is within the bound of any point.
     bool any_within(const Node& node, int slot) const {
-        EightFloats sum = EightFloats{} - load(bound.data());
+        EightFloats sum = EightFloats{} - load_eight(bound.data());
         const float* const points[3] = {local_x.data(), local_y.data(), local_z.data()};
         for (int k = 0; k < 3; ++k) {
-            const EightFloats at = load(points[k]);
+            const EightFloats at = load_eight(points[k]);
             const EightFloats below = node.low[k][slot] - at, above = at - node.high[k][slot];
             const EightFloats larger = below > above ? below : above;
             const EightFloats outside = larger > 0.0f ? larger : EightFloats{};
@@ -204,7 +204,8 @@ struct ClosestFaceTree::Packet {
             return try_exactly(face);
         const LimbSet limb = tree.limb(face);
         bool improved = false;
-        for (unsigned left = bits(squared <= load(bound.data())); left != 0; left &= left - 1) {
+        for (unsigned left = bits(squared <= load_eight(bound.data())); left != 0;
+             left &= left - 1) {
             const int k = __builtin_ctz(left);
             const auto lane = static_cast<size_t>(k);
             if ((limb & queries[k].ignored) != 0 || face == queries[k].hint) continue;

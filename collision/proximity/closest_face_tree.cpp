@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "collision/geometry/fcl_hierarchy.h"
-#include "collision/proximity/eight_lanes.h"
+#include "collision/proximity/eight_boxes.h"
 #include "data/core/triangle.h"
 
 namespace cloth {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "collision/self/eight_lanes.h"
+#include "collision/geometry/eight_lanes.h"
 
 namespace cloth {
 namespace {
@@ -142,13 +142,13 @@ unsigned ElementGroups::compare(const Corner& corner, const Discs& discs, Which 
     const Lanes approach = root(dot(drift, drift)) + load_eight(discs.motion.radius);
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach), radius = load_eight(discs.radius);
     const Lanes squared = dot(to, to), limit = radius + far + m_rounding;
-    EightMasks found = squared <= limit * limit;
+    EightFlags found = squared <= limit * limit;
     if (which == Which::facing) {
         const Lanes height = dot(to, normal);
         const Lanes beside = (1.0f + relative) * (radius + magnitude(height)) + m_rounding;
         found &= squared - height * height <= beside * beside;
     }
-    return bits_of(found);
+    return bits(found);
 }
 
 /// Near: what the edges extend along the line between their middles is less than these are apart.
@@ -168,16 +168,16 @@ unsigned ElementGroups::compare(const Rods& a, int lane, const Rods& b, Which wh
     if (which == Which::near) {
         const Lanes limit = far + m_rounding;
         const Lanes gap = (1.0f - relative) * squared - (magnitude(ut) + magnitude(vt));
-        return bits_of((gap <= 0.0f) | (gap * gap <= squared * limit * limit));
+        return bits((gap <= 0.0f) | (gap * gap <= squared * limit * limit));
     }
     const Lanes u = Lanes{} + a.length[lane], v = load_eight(b.length), uv = dot(first, second);
     const Lanes limit = u + v + far + m_rounding;
-    const unsigned close = bits_of(squared <= limit * limit);
+    const unsigned close = bits(squared <= limit * limit);
     if (close == 0) return 0;
     const Lanes room = relative * limit + m_rounding;  // of `to`
     const Lanes scale = (1.0f + relative) * u * u * v * v - uv * uv;
-    return close & bits_of((magnitude(ut * v * v - uv * vt) <= scale + u * v * v * room) &
-                           (magnitude(uv * ut - u * u * vt) <= scale + u * u * v * room));
+    return close & bits((magnitude(ut * v * v - uv * vt) <= scale + u * v * v * room) &
+                        (magnitude(uv * ut - u * u * vt) <= scale + u * u * v * room));
 }
 
 }  // namespace cloth

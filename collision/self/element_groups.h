@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "collision/self/eight_lanes.h"
+#include "collision/geometry/eight_lanes.h"
 #include "collision/self/face_groups.h"
 #include "collision/self/self_elements.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "collision/geometry/eight_lanes.h"
 #include "collision/geometry/gather_in_order.h"
-#include "collision/self/eight_lanes.h"
 
 namespace cloth {
 namespace {
@@ -42,15 +42,15 @@ void FacePairs::compare(const std::array<int, 2>& groups, float distance,
     const FaceGroups::Lanes &first = m_groups.faces(groups[0]), &second = m_groups.faces(groups[1]);
     const EightFloats zero = {};
     for (size_t i = 0; i < width && first[i] >= 0; ++i) {
-        EightMasks near = {-1, -1, -1, -1, -1, -1, -1, -1};
+        EightFlags near = {-1, -1, -1, -1, -1, -1, -1, -1};
         for (int k = 0; k < 3; ++k) {
             const EightFloats least = a.least_motion[k][i] - load_eight(b.most_motion[k]);
             const EightFloats most = a.most_motion[k][i] - load_eight(b.least_motion[k]);
-            const EightFloats down = least < zero ? least : zero, up = most > zero ? most : zero;
+            const EightFloats down = smaller(least, zero), up = larger(most, zero);
             near &= (a.low[k][i] + down <= load_eight(b.high[k]) + distance) &
                     (a.high[k][i] + up >= load_eight(b.low[k]) - distance);
         }
-        unsigned lanes = bits_of(near);
+        unsigned lanes = bits(near);
         if (groups[0] == groups[1]) lanes &= ~1u << i;  // each pair once
         for_each_lane(lanes, [&](size_t lane) {
             result.push_back({std::min(first[i], second[lane]), std::max(first[i], second[lane])});
