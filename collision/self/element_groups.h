@@ -112,7 +112,7 @@ void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& 
         for_each_lane(compare(corner, discs, which), [&](size_t lane) {
             const int v = corner.vertex, g = discs.face[lane];
             const auto at = m_elements.faces().row(g);
-            if ((v != at[0]) & (v != at[1]) & (v != at[2]))
+            if (v != at[0] && v != at[1] && v != at[2])
                 visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corner.face, g);
         });
     }
@@ -131,7 +131,7 @@ void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& vi
                 for_each_lane(lanes, [&, a0 = a0, a1 = a1](size_t lane) {
                     const int second = m_rods[s].edge[lane];
                     const auto [b0, b1] = edges[static_cast<size_t>(second)];
-                    if ((a0 != b0) & (a0 != b1) & (a1 != b0) & (a1 != b1))
+                    if (a0 != b0 && a0 != b1 && a1 != b0 && a1 != b1)
                         visit(ElementPair{{a0, a1, b0, b1}, {first, second}, true},
                               m_rods[r].face[i], m_rods[s].face[lane]);
                 });

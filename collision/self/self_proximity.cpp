@@ -69,7 +69,8 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
     };
     gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_pairs, find,
                          ElementGroups::pairs_at_once);
-    // Whoever goes through the pairs one after the other should not depend on how faces are grouped.
+    // Whoever goes through the pairs one after the other should not depend on how faces are
+    // grouped.
     std::sort(m_pairs.begin(), m_pairs.end(), [](const SelfPair& a, const SelfPair& b) {
         return std::tie(a.elements.edges, a.elements.element) <
                std::tie(b.elements.edges, b.elements.element);
