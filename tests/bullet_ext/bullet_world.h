@@ -5,6 +5,7 @@
 #include <BulletSoftBody/btSoftRigidDynamicsWorld.h>
 #include <btBulletDynamicsCommon.h>
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 
@@ -145,6 +146,14 @@ class FreeFall : public Stepper {
 
 inline StepperFactory free_fall(std::shared_ptr<FreeFall::Log> log = nullptr, double fixed = 0.0) {
     return [=](const Garment& garment) { return std::make_unique<FreeFall>(garment, log, fixed); };
+}
+
+/// (m/s)
+inline double fastest_node(const btSoftBody& body) {
+    double speed = 0.0;
+    for (int i = 0; i < body.m_nodes.size(); ++i)
+        speed = std::max(speed, static_cast<double>(body.m_nodes[i].m_v.length()));
+    return speed;
 }
 
 inline Vec3 node(const btSoftBody& body, int i) {

@@ -211,7 +211,15 @@ TEST(ClothContacts, SteppersThatDifferMeet) {
             if (any) most = std::max(most, whole.tangles());
         }
         EXPECT_EQ(most, 0);
-        EXPECT_GT(height_above(*below, node(*above, 40)), -0.01) << any;
+        double sum = 0.0;  // of the nodes above the other sheet
+        int count = 0;
+        for (int i = 0; i < above->m_nodes.size(); ++i) {
+            const double height = height_above(*below, node(*above, i));
+            if (std::isinf(height)) continue;
+            sum += height;
+            ++count;
+        }
+        EXPECT_GT(sum / count, -0.01) << any;
     }
 }
 

@@ -113,13 +113,6 @@ btRigidBody* any_body(Dice& dice, World& world, const btVector3& place, double l
     return body;
 }
 
-double fastest_node(const btSoftBody& cloth) {
-    double speed = 0.0;
-    for (int i = 0; i < cloth.m_nodes.size(); ++i)
-        speed = std::max(speed, static_cast<double>(cloth.m_nodes[i].m_v.length()));
-    return speed;
-}
-
 /// Of all of it: a body that turns moves faster than its centre.
 double speed_of(const btRigidBody& body, double size) {
     return static_cast<double>(body.getLinearVelocity().length()) +

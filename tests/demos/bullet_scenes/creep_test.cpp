@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <algorithm>
 #include <string>
 
 #include "bullet_ext/softBodyGarment.h"
 #include "demos/bullet_scenes/scene_solver.h"
+#include "tests/bullet_ext/bullet_world.h"
 #include "tests/demos/bullet_scenes/print_scene.h"
 
 namespace cloth::creep_test {
@@ -16,13 +16,6 @@ namespace cloth::creep_test {
 namespace {
 
 constexpr int kRate = 60, kSteps = 6 * kRate;
-
-double fastest_node(const btSoftBody& cloth) {
-    double speed = 0.0;
-    for (int i = 0; i < cloth.m_nodes.size(); ++i)
-        speed = std::max(speed, static_cast<double>(cloth.m_nodes[i].m_v.length()));
-    return speed;
-}
 
 /// Part of the steps in which the first cloth of a scene moved, without the velocities for it.
 double creeping_share(const SceneRecipe& recipe) {
@@ -37,7 +30,7 @@ double creeping_share(const SceneRecipe& recipe) {
         const Points before = nodePositions(cloth);
         scene.step(btScalar(1) / kRate);
         const double way = (nodePositions(cloth) - before).rowwise().norm().maxCoeff();
-        creeps += way * kRate > kMoves && fastest_node(cloth) < 0.1 * way * kRate;
+        creeps += way * kRate > kMoves && test::fastest_node(cloth) < 0.1 * way * kRate;
     }
     return static_cast<double>(creeps) / kSteps;
 }
