@@ -13,10 +13,10 @@ if [ ${#files[@]} -eq 0 ]; then
     's#^ *"file": "(.*/(bullet_ext|collision|gnn/graph|gnn/model|gnn/physics|gnn/skinning)/[^"]*)",?$#\1#p' \
     "$build/compile_commands.json" | grep -vE '/tests/|cmake_pch')
 fi
-# clang reads no headers that GCC precompiled, and the files are to include what they use
+# the files are to include what they use, so no precompiled headers
 commands="$(mktemp -d)"
 trap 'rm -rf "$commands"' EXIT
-sed -E 's/ -Winvalid-pch//; s/ -fpch-preprocess//; s/ -include [^ ]*cmake_pch\.hxx//' \
+sed -E 's/ -Winvalid-pch//; s/ -fpch-preprocess//; s/( -Xclang)? -include(-pch)?( -Xclang)? [^ ]*cmake_pch\.hxx(\.pch)?//g' \
   "$build/compile_commands.json" > "$commands/compile_commands.json"
 # it counts suppressed warnings of other people's headers on standard error
 printf '%s\0' "${files[@]}" |

@@ -1,6 +1,8 @@
-# Builds programs outside the tree with the flags FLAGS, by find_package and by pkg-config, and runs
-# them: what a program gets from the library and gives to it must not depend on how it is compiled.
-#   cmake -DPREFIX=... -DSOURCE=... -DWORK=... -DCXX=... -DFLAGS=... [-DONLY_PASSES=ON] -P builds.cmake
+# Builds programs outside the tree with the flags FLAGS, by find_package or by both it and pkg-config,
+# and runs them: what a program gets from the library and gives to it must not depend on how it is
+# compiled.
+#   cmake -DPREFIX=... -DSOURCE=... -DWORK=... -DCXX=... -DFLAGS=... [-DONLY_PASSES=ON] [-DPKG_CONFIG=ON]
+#         -P builds.cmake
 include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
@@ -31,6 +33,9 @@ foreach(source ${sources})
     message(FATAL_ERROR "the example took its weights from elsewhere:\n${run_output}")
   endif()
 
+  if(NOT PKG_CONFIG)
+    continue()
+  endif()
   run("${program}: build by pkg-config" works sh -c
       "${CXX} -std=c++17 ${FLAGS} ${source} -o ${WORK}/${program} \
        $(pkg-config --cflags --libs ${modules_of_${program}})")
