@@ -13,7 +13,6 @@ namespace cloth {
 namespace {
 
 using Vec3f = Eigen::Vector3f;
-using Mat4f = Eigen::Matrix4f;
 
 constexpr double kFarthest = 1000.0;  // (m): positions beyond are a failed solver's
 
@@ -103,8 +102,8 @@ ShadowView shadow_view(const std::vector<Drawable>& drawables, const Vec3& key, 
     return shadow;
 }
 
-Mat4f clip_to_texture() {
-    Mat4f map = Mat4f::Identity() * 0.5f;
+Eigen::Matrix4f clip_to_texture() {
+    Eigen::Matrix4f map = Eigen::Matrix4f::Identity() * 0.5f;
     map.topRightCorner<3, 1>().setConstant(0.5f);
     map(3, 3) = 1.0f;
     return map;

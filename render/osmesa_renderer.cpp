@@ -24,7 +24,6 @@ namespace cloth {
 namespace {
 
 using Vec3f = Eigen::Vector3f;
-using Mat4f = Eigen::Matrix4f;
 
 constexpr GLuint kPosition = 0;
 constexpr GLuint kNormal = 1;
@@ -54,7 +53,7 @@ class Program {
     void set(const char* name, double value) const { set(name, static_cast<float>(value)); }
     void set(const char* name, const Vec3f& v) const { glUniform3fv(location(name), 1, v.data()); }
     void set(const char* name, const Vec3& v) const { set(name, Vec3f(v.cast<float>())); }
-    void set(const char* name, const Mat4f& m) const {
+    void set(const char* name, const Eigen::Matrix4f& m) const {
         glUniformMatrix4fv(location(name), 1, GL_FALSE, m.data());
     }
 

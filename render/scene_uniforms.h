@@ -14,10 +14,10 @@ namespace cloth {
 template <typename Program>
 void set_scene_uniforms(const Program& program, const Camera& camera, double aspect,
                         const Lights& lights, const ShadowView& shadow, int shadow_size) {
-    using Mat4f = Eigen::Matrix4f;
-    program.set("view", Mat4f(view_matrix(camera).cast<float>()));
-    program.set("projection", Mat4f(projection_matrix(camera, aspect).cast<float>()));
-    program.set("world_to_shadow", Mat4f(clip_to_texture() * shadow.projection * shadow.view));
+    program.set("view", Eigen::Matrix4f(view_matrix(camera).cast<float>()));
+    program.set("projection", Eigen::Matrix4f(projection_matrix(camera, aspect).cast<float>()));
+    program.set("world_to_shadow",
+                Eigen::Matrix4f(clip_to_texture() * shadow.projection * shadow.view));
     program.set("shadow_texel", shadow.texel);
     program.set("shadow_step", 1.0 / shadow_size);
     program.set("shadow_strength", lights.shadows ? 1.0 : 0.0);

@@ -52,6 +52,8 @@ class GoalProjection {
     void resolve(Proximity& proximity, const Boundary& boundary, double distance, Points& x,
                  SurfaceContacts& contacts);
 
+    /// Those at t + dt of vertices that are limited.
+    const std::vector<VertexGoal>& goals() const { return m_goals; }
     /// What the last resolve() did.
     const GoalReport& last() const { return m_last; }
     const std::vector<int>& moved() const { return m_moved; }  ///< vertices, by the last resolve()

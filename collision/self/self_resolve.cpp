@@ -13,7 +13,8 @@ namespace {
 constexpr int sweeps = 40;              // of PlanePush in each round
 constexpr double most = 3.0;            // see PlanePush::solve
 constexpr double growth = 0.03;         // of edges near what is pushed, as in ContactProjection
-constexpr double hold_distance = 1e-2;  // m: vertices further from obstacles need no holding
+constexpr double hold_distance = 1e-2;  // m: vertices further from obstacles, or from the limits of
+                                        // their goals, need no holding
 constexpr double gap_share = 0.25;      // of the thickness, at which cloth is left
 constexpr int zone_rounds = 50;         // each joins zones that touch, so they end
 constexpr int turning_rounds = 5;       // of these; elements in a turn whose distance is next to
@@ -21,10 +22,10 @@ constexpr int turning_rounds = 5;       // of these; elements in a turn whose di
 constexpr double torn = 1.5;            // times its rest length, of an edge that
 constexpr double torn_growth = 1.2;     // was drawn out by so much more than the step would have
 
-VectorX inverses(const VectorX& masses, const std::vector<char>& pinned) {
+VectorX inverses(const VectorX& masses, const std::vector<char>& held) {
     VectorX inverse = masses.cwiseInverse();
-    for (size_t i = 0; i < pinned.size(); ++i)
-        if (pinned[i]) inverse[static_cast<Eigen::Index>(i)] = 0.0;
+    for (size_t i = 0; i < held.size(); ++i)
+        if (held[i]) inverse[static_cast<Eigen::Index>(i)] = 0.0;
     return inverse;
 }
 
@@ -38,7 +39,7 @@ SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& se
                            const VectorX& masses, const FaceParts& parts)
     : m_settings(settings),
       m_crossings(garment, parts),
-      m_push(inverses(masses, garment.is_pinned())),
+      m_push(inverses(masses, garment.is_held())),
       m_guard(garment, growth),
       m_zones(garment, masses),
       m_rest(garment.rest().vertices),
@@ -50,7 +51,8 @@ SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& se
 }
 
 SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts& contacts,
-                                        double distance, Points& x, bool may_pass) {
+                                        double distance, Points& x, bool may_pass,
+                                        const std::vector<VertexGoal>& goals) {
     SelfResolveReport report;
     m_moved.clear();
     m_pairs.clear();
@@ -64,7 +66,7 @@ SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts&
     while (report.left > 0 && report.rounds < m_settings.rounds) {
         ++report.rounds;
         m_pairs.insert(m_pairs.end(), m_crossings.found().begin(), m_crossings.found().end());
-        push(contacts, distance, x);
+        push(contacts, distance, goals, x);
         report.left = static_cast<int>(m_crossings.find(x0, x, m_settings.threads).size());
     }
     if (report.left > 0) {
@@ -95,12 +97,14 @@ double SelfResolver::gap(const ElementPair& elements) const {
     return std::min(wanted, 0.5 * rest);
 }
 
-void SelfResolver::push(const SurfaceContacts& contacts, double distance, Points& x) {
+void SelfResolver::push(const SurfaceContacts& contacts, double distance,
+                        const std::vector<VertexGoal>& goals, Points& x) {
     m_push.clear();
     for (const SelfPair& pair : m_pairs)
         m_push.add_pair(pair.elements.vertex, pair.weight, pair.normal, gap(pair.elements));
     hold_vertices(contacts, distance);
     m_guard.add_planes(x, m_push);
+    hold_at_goals(goals, x);
     m_push.solve(sweeps, most, x);
 }
 
@@ -114,9 +118,31 @@ void SelfResolver::hold_vertices(const SurfaceContacts& contacts, double distanc
             if (held || !contacts.has(i) || !(contacts.distance[i] < hold_distance)) continue;
             held = 1;
             const Vec3 normal = outward(contacts, i, m_before);
-            m_push.add({i, i, i}, {1.0, 0.0, 0.0}, normal,
-                       normal.dot(contacts.point1.row(i)) + distance);
+            hold(i, normal, normal.dot(contacts.point1.row(i)) + distance);
         }
+}
+
+/// Planes that keep whatever is pushed within the limits of its goals. Left to a projection
+/// afterwards, what that brings back would pass through what it was pushed out of.
+void SelfResolver::hold_at_goals(const std::vector<VertexGoal>& goals, const Points& x) {
+    if (goals.empty()) return;
+    std::fill(m_held.begin(), m_held.end(), 0);
+    m_push.mark_vertices(m_held);
+    for (const VertexGoal& goal : goals) {
+        if (!m_held[static_cast<size_t>(goal.vertex)]) continue;
+        const Vec3 away = x.row(goal.vertex).transpose() - goal.place;
+        const double distance = away.norm();
+        if (distance > 0.0 && distance > goal.max_distance - hold_distance) {
+            const Vec3 back = -away / distance;
+            hold(goal.vertex, back, back.dot(goal.place) - goal.max_distance);
+        }
+        if (away.dot(goal.normal) < hold_distance - goal.backstop && !goal.normal.isZero(0.0))
+            hold(goal.vertex, goal.normal, goal.normal.dot(goal.place) - goal.backstop);
+    }
+}
+
+void SelfResolver::hold(int vertex, const Vec3& normal, double height) {
+    m_push.add({vertex, vertex, vertex}, {1.0, 0.0, 0.0}, normal, height);
 }
 
 /// Puts the ends of torn edges back where the step would have ended; the whole follows, so that

@@ -9,6 +9,7 @@
 #include "collision/self/rigid_impact_zones.h"
 #include "collision/self/self_contact_settings.h"
 #include "collision/self/self_crossings.h"
+#include "data/core/skin_goals.h"
 
 namespace cloth {
 
@@ -29,9 +30,10 @@ struct SelfResolveReport {
 ///     resolver.resolve(state.x, contacts, 5e-4, x);
 ///
 /// First by the smallest motion, weighted with the masses, that keeps linear momentum, holds
-/// vertices outside of obstacles and does not stretch the cloth; what is not solved so within the
-/// rounds moves rigidly for this step. Cloth that does not cross keeps its bits. What is tangled at
-/// t stays as it is: its elements are not taken apart, and do not get deeper.
+/// vertices outside of obstacles and near their goals, and does not stretch the cloth; what is not
+/// solved so within the rounds moves rigidly for this step. Cloth that does not cross keeps its
+/// bits. What is tangled at t stays as it is: its elements are not taken apart, and do not get
+/// deeper.
 class SelfResolver {
  public:
     /// @throws ArgumentError if a setting is out of range
@@ -47,8 +49,10 @@ class SelfResolver {
     /// @param x         |V| x 3 (m): positions at t + dt; pinned vertices do not move
     /// @param may_pass  cloth that would be drawn out to more than 1.5 of its length is let go, and
     ///                  passes through: for what is tangled at t, and untangled afterwards
+    /// @param goals     at t + dt, of vertices that are limited
     SelfResolveReport resolve(const Points& x0, const SurfaceContacts& contacts, double distance,
-                              Points& x, bool may_pass = false);
+                              Points& x, bool may_pass = false,
+                              const std::vector<VertexGoal>& goals = {});
 
     /// Vertices that the last resolve() may have moved, each once.
     const std::vector<int>& moved() const { return m_moved; }
@@ -56,8 +60,11 @@ class SelfResolver {
     const std::vector<SelfPair>& pairs() const { return m_pairs; }
 
  private:
-    void push(const SurfaceContacts& contacts, double distance, Points& x);
+    void push(const SurfaceContacts& contacts, double distance,
+              const std::vector<VertexGoal>& goals, Points& x);
     void hold_vertices(const SurfaceContacts& contacts, double distance);
+    void hold_at_goals(const std::vector<VertexGoal>& goals, const Points& x);
+    void hold(int vertex, const Vec3& normal, double height);
     double gap(const ElementPair& elements) const;
     bool release_torn(const SurfaceContacts& contacts, Points& x) const;
     void note_moved(const Points& x);

@@ -85,6 +85,21 @@ VectorX Garment::inverse_masses() const {
     return inverse;
 }
 
+std::vector<char> Garment::is_held() const {
+    std::vector<char> held = m_is_pinned;
+    for (Eigen::Index i = 0; i < m_goal_limits.max_distance.size(); ++i)
+        if (m_goal_limits.max_distance[i] == 0.0) held[static_cast<size_t>(i)] = 1;
+    return held;
+}
+
+VectorX Garment::mobilities() const {
+    VectorX mobilities = m_masses.cwiseInverse();
+    const std::vector<char> held = is_held();
+    for (size_t i = 0; i < held.size(); ++i)
+        if (held[i]) mobilities[static_cast<Eigen::Index>(i)] = 0.0;
+    return mobilities;
+}
+
 Garment Garment::with_fabric(const Fabric& fabric) const {
     return Garment(m_name, m_rest, fabric, m_pins, m_rest_angles_from_mesh)
         .with_goals(m_goal_limits);

@@ -42,7 +42,9 @@ class Garment {
     bool rest_angles_from_mesh() const { return m_rest_angles_from_mesh; }    ///< else flat
     const VectorX& face_areas() const { return m_face_areas; }                ///< |F| (m^2)
     const VectorX& masses() const { return m_masses; }                        ///< |V| (kg)
-    VectorX inverse_masses() const;  ///< |V| (1/kg), 0 for pinned vertices
+    VectorX inverse_masses() const;     ///< |V| (1/kg), 0 for pinned vertices
+    std::vector<char> is_held() const;  ///< |V|: 1 if pinned, or never away from its goal
+    VectorX mobilities() const;         ///< |V|: inverse_masses(), 0 for held vertices too
     const GoalLimits& goal_limits() const { return m_goal_limits; }  ///< empty: none
     bool has_goals() const { return m_has_goals; }  ///< whether any of them limits anything
     Eigen::Index vertex_count() const { return m_rest.vertices.rows(); }

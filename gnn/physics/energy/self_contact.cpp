@@ -53,9 +53,7 @@ bool SelfContactEnergy::is_tangled(const SelfPair& pair) const {
     const auto tangled = [&](size_t k) {
         return m_tangled[static_cast<size_t>(pair.elements.vertex[k])] != 0;
     };
-    const bool either = tangled(2) || tangled(3);
-    if (pair.elements.edges) return (tangled(0) || tangled(1)) && either;
-    return tangled(0) && (tangled(1) || either);
+    return tangled(0) || tangled(1) || tangled(2) || tangled(3);
 }
 
 void SelfContactEnergy::take_pairs() {

@@ -47,9 +47,8 @@ class SelfContactEnergy {
 
     /// Finds the pairs that are near at t, or would be on the way to t + dt with the velocities at
     /// t.
-    /// @param tangles  at t: pairs of elements that both belong to tangles are left out, for they
-    /// may
-    ///                 be on the wrong side; null: none is
+    /// @param tangles  at t: pairs of which an element belongs to one are left out, for they may be
+    ///                 on the wrong side, and hold the tangle; null: none is
     void begin_step(const ClothState& state, double dt,
                     const std::vector<Tangle>* tangles = nullptr);
 

@@ -8,6 +8,8 @@ namespace cloth {
 namespace {
 
 constexpr int passes = 3;             // layers, obstacles, layers, ...: layers have the last word
+constexpr int goal_rounds = 4;        // of layers and goals in turn
+constexpr double fair_move = 1e-6;    // m: goals that move vertices less leave the layers apart
 constexpr double fair_depth = 1e-6;   // m: vertices less deep in an obstacle are at its surface
 constexpr int vertex_iterations = 3;  // of push_out_rows
 
@@ -27,16 +29,29 @@ SelfContactProjection::SelfContactProjection(const Garment& garment,
 }
 
 void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const Boundary& boundary,
-                                   double distance, Points& x, SurfaceContacts& contacts,
-                                   StepReport& report) {
+                                   double distance, GoalProjection& goals, Points& x,
+                                   SurfaceContacts& contacts, StepReport& report) {
     if (!m_tools || !x.allFinite()) return;
     m_last = {};
-    m_next_untangled.resize(0, 3);
-    const bool obstacles = !boundary.obstacles.empty();
     const bool tangled = m_untangling && !same(x0, m_untangled);
+    for (int round = 0; round < goal_rounds; ++round) {
+        part_layers(x0, proximity, boundary, distance, goals.goals(), tangled, x, contacts, report);
+        m_next_untangled.resize(0, 3);
+        if (m_last.keeps_untangled && same(x0, m_untangled)) m_next_untangled = x;
+        goals.resolve(proximity, boundary, distance, x, contacts);
+        if (goals.last().max_move < fair_move) break;
+    }
+}
+
+/// Layers and obstacles.
+void SelfContactProjection::part_layers(const Points& x0, Proximity& proximity,
+                                        const Boundary& boundary, double distance,
+                                        const std::vector<VertexGoal>& goals, bool tangled,
+                                        Points& x, SurfaceContacts& contacts, StepReport& report) {
+    const bool obstacles = !boundary.obstacles.empty();
     for (int pass = 0; pass < passes; ++pass) {
-        const SelfResolveReport resolved =
-            m_tools->resolver.resolve(x0, obstacles ? contacts : m_none, distance, x, tangled);
+        const SelfResolveReport resolved = m_tools->resolver.resolve(
+            x0, obstacles ? contacts : m_none, distance, x, tangled, goals);
         m_last.crossings += resolved.crossings;
         m_last.rounds += resolved.rounds;
         m_last.rigid = std::max(m_last.rigid, resolved.rigid);
@@ -50,7 +65,6 @@ void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const
         if (depth < fair_depth || pass + 1 == passes) break;
         push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x, contacts);
     }
-    if (m_last.keeps_untangled && same(x0, m_untangled)) m_next_untangled = x;
 }
 
 void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {

@@ -20,10 +20,11 @@ class SelfContactProjection {
     /// @param x0        |V| x 3 (m): positions at t
     /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt; kept up to date
     /// @param distance  of vertices from obstacles (m) that is held
+    /// @param goals     begun for this step; have the last word
     /// @param x         |V| x 3 (m): positions at t + dt, pins in place
     /// @param report    max_penetration is brought up to date
     void finish(const Points& x0, Proximity& proximity, const Boundary& boundary, double distance,
-                Points& x, SurfaceContacts& contacts, StepReport& report);
+                GoalProjection& goals, Points& x, SurfaceContacts& contacts, StepReport& report);
 
     /// Counts them in `report`, at the end of all. Does not look for them where x is what the last
     /// finish() made of positions without any, and nothing passed through anything.
@@ -43,6 +44,9 @@ class SelfContactProjection {
     const SelfResolveReport& last() const { return m_last; }
 
  private:
+    void part_layers(const Points& x0, Proximity& proximity, const Boundary& boundary,
+                     double distance, const std::vector<VertexGoal>& goals, bool tangled, Points& x,
+                     SurfaceContacts& contacts, StepReport& report);
     double depth_of_moved(const SurfaceContacts& contacts);
     void keep(const std::vector<Tangle>& tangles, const Points& x);
     void report_tangles(const std::vector<Tangle>& tangles, const Points& x, StepReport& report);

@@ -443,8 +443,8 @@ void StepSolver::project(const Boundary& boundary, const ClothState& state, Step
         m_goals.finish(m_projection, m_proximity, boundary, distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
     report.max_entry = resolved.max_depth_before;
-    m_self_contact.finish(state.x, m_proximity, boundary, distance, m_x, m_contacts, report);
-    if (m_self_contact.on()) m_goals.resolve(m_proximity, boundary, distance, m_x, m_contacts);
+    m_self_contact.finish(state.x, m_proximity, boundary, distance, m_goals, m_x, m_contacts,
+                          report);
     m_self_contact.count_tangles(m_x, report);
     report.vertices_beyond_goals = m_goals.last().beyond;
     report.max_goal_excess = m_goals.last().max_excess;

@@ -21,11 +21,8 @@ Untangling::Untangling(const Garment& garment, const SelfContactSettings& settin
       m_settings(settings),
       m_elastic(garment),
       m_measure(garment),
-      m_mobility(garment.inverse_masses()) {
+      m_mobility(garment.mobilities()) {
     check_self_contact(settings);
-    const VectorX& limit = garment.goal_limits().max_distance;
-    for (Eigen::Index i = 0; i < limit.size(); ++i)
-        if (limit[i] == 0.0) m_mobility[i] = 0.0;
     std::vector<int> degree(static_cast<size_t>(garment.vertex_count()), 0);
     for (const auto& edge : garment.edges())
         for (const int i : edge) ++degree[static_cast<size_t>(i)];

@@ -31,24 +31,14 @@ const XpbdSettings& checked(const XpbdSettings& settings) {
     return settings;
 }
 
-/// |V| (1/kg): springs do not move pins, nor what stays at its goal; they would be half as stiff
-/// there.
-VectorX movable_masses(const Garment& garment) {
-    VectorX inverse = garment.inverse_masses();
-    const VectorX& distance = garment.goal_limits().max_distance;
-    for (Eigen::Index i = 0; i < distance.size(); ++i)
-        if (distance[i] == 0.0) inverse[i] = 0.0;
-    return inverse;
-}
-
 }  // namespace
 
 XpbdStepper::XpbdStepper(const Garment& garment, const XpbdSettings& settings,
                          const ProximitySettings& proximity)
     : m_garment(&garment),
       m_settings(checked(settings)),
-      m_stretch(stretch_springs(garment), movable_masses(garment), settings.relaxation),
-      m_bending(bending_springs(garment, settings.bending_angle), movable_masses(garment),
+      m_stretch(stretch_springs(garment), garment.mobilities(), settings.relaxation),
+      m_bending(bending_springs(garment, settings.bending_angle), garment.mobilities(),
                 settings.relaxation),
       m_proximity(proximity),
       m_resolver(garment),
@@ -186,8 +176,8 @@ void XpbdStepper::move_pins(const Boundary& boundary, const Points& x0, double p
 void XpbdStepper::finish_self_contact(const Boundary& boundary, double dt, const ClothState& state,
                                       StepReport& report) {
     m_v = m_x;
-    m_self_contact.finish(state.x, m_proximity, boundary, safety_distance, m_x, m_contacts, report);
-    m_goal_resolver.resolve(m_proximity, boundary, safety_distance, m_x, m_contacts);
+    m_self_contact.finish(state.x, m_proximity, boundary, safety_distance, m_goal_resolver, m_x,
+                          m_contacts, report);
     for (Eigen::Index i = 0; i < m_x.rows(); ++i)
         if (m_x.row(i) != m_v.row(i)) m_w.row(i).head<3>() = (m_x.row(i) - state.x.row(i)) / dt;
 }

@@ -154,6 +154,41 @@ TEST(SelfResolver, KeepsASheetAboveAnother) {
     EXPECT_FALSE(resolver.moved().empty());
 }
 
+TEST(SelfResolver, HoldsWhatItPushesWithinTheLimitsOfGoals) {
+    const MergedGarments sheets = two_sheets(5e-3, 300);
+    const Points x0 = sheets.garment.rest().vertices;
+    const Eigen::Index upper = sheets.first_vertex[1];
+    Points before = x0;  // the upper sheet goes down through the lower one
+    before.bottomRows(x0.rows() - upper).rowwise() -= Eigen::RowVector3d(0.0, 0.02, 0.0);
+    std::vector<VertexGoal> by_distance, by_backstop;
+    for (int i = 0; i < upper; ++i) {
+        const Vec3 place = x0.row(i);
+        by_distance.push_back({i, place, Vec3::Zero(), 2e-3, 0.0});
+        by_backstop.push_back({i, place, Vec3::UnitY(), 1.0, 2e-3});
+    }
+    const auto resolved = [&](const Garment& garment, const std::vector<VertexGoal>& goals) {
+        Points x = before;
+        EXPECT_EQ(SelfResolver(garment, settings()).resolve(x0, {}, 0.0, x, false, goals).left, 0);
+        EXPECT_TRUE(SelfTangles(garment).find(x).empty());
+        return x;
+    };
+    const auto excess = [](const std::vector<VertexGoal>& goals, const Points& x) {
+        double most = 0.0;
+        for (const VertexGoal& goal : goals) most = std::max(most, goal.excess(x.row(goal.vertex)));
+        return most;
+    };
+    const Points free = resolved(sheets.garment, {});
+    for (const auto& goals : {by_distance, by_backstop}) {
+        EXPECT_GT(excess(goals, free), 5e-3) << "the scene asks for nothing";
+        EXPECT_LT(excess(goals, resolved(sheets.garment, goals)), 1e-4);
+    }
+    GoalLimits limits;
+    limits.max_distance.setConstant(x0.rows(), 1.0);
+    limits.max_distance.head(upper).setZero();
+    const Points held = resolved(sheets.garment.with_goals(limits), {});
+    EXPECT_EQ(held.topRows(upper), x0.topRows(upper)) << "what never leaves its goal is not pushed";
+}
+
 TEST(SelfResolver, ARollThatIsShakenHardDoesNotTangle) {
     const Garment garment = strip(600);
     const Points x0 = wound(garment.rest().vertices, 6e-3);

@@ -85,6 +85,18 @@ TEST(GoalLimits, StayWithTheGarmentAndItsMergers) {
     EXPECT_EQ(merged.goal_limits().backstop.size(), 0);
 }
 
+TEST(GoalLimits, WhatNeverLeavesItsGoalIsHeldAsPinsAre) {
+    GoalLimits limits;
+    limits.max_distance = filled(0.1);
+    limits.max_distance[2] = 0.0;
+    const Garment garment = two_faces().with_goals(limits).with_pins({1});
+    EXPECT_EQ(garment.is_held(), (std::vector<char>{0, 1, 1, 0}));
+    VectorX mobilities = garment.masses().cwiseInverse();
+    mobilities[1] = mobilities[2] = 0.0;
+    EXPECT_EQ(garment.mobilities(), mobilities);
+    EXPECT_EQ(two_faces().mobilities(), two_faces().inverse_masses());
+}
+
 TEST(SkinGoals, FitOnlyWithSizesNumbersAndNormals) {
     GoalLimits limits;
     const Points x = two_faces().rest().vertices;
