@@ -123,22 +123,35 @@ void SelfResolver::hold_vertices(const SurfaceContacts& contacts, double distanc
 }
 
 /// Planes that keep whatever is pushed within the limits of its goals. Left to a projection
-/// afterwards, what that brings back would pass through what it was pushed out of.
+/// afterwards, what that brings back would pass through what it was pushed out of. Each pair has
+/// its own, so that pairs do not outweigh them.
 void SelfResolver::hold_at_goals(const std::vector<VertexGoal>& goals, const Points& x) {
     if (goals.empty()) return;
     std::fill(m_held.begin(), m_held.end(), 0);
     m_push.mark_vertices(m_held);
+    m_goal.assign(m_held.size(), nullptr);
     for (const VertexGoal& goal : goals) {
-        if (!m_held[static_cast<size_t>(goal.vertex)]) continue;
-        const Vec3 away = x.row(goal.vertex).transpose() - goal.place;
-        const double distance = away.norm();
-        if (distance > 0.0 && distance > goal.max_distance - hold_distance) {
-            const Vec3 back = -away / distance;
-            hold(goal.vertex, back, back.dot(goal.place) - goal.max_distance);
-        }
-        if (away.dot(goal.normal) < hold_distance - goal.backstop && !goal.normal.isZero(0.0))
-            hold(goal.vertex, goal.normal, goal.normal.dot(goal.place) - goal.backstop);
+        const auto i = static_cast<size_t>(goal.vertex);
+        m_goal[i] = &goal;
+        const Vec3 at = x.row(goal.vertex);
+        if (m_held[i]) hold_at_goal(goal, at, (at - goal.place).stableNormalized());
     }
+    for (const SelfPair& pair : m_pairs)
+        for (size_t k = 0; k < 4; ++k) {
+            const int i = pair.elements.vertex[k];
+            const VertexGoal* goal = m_goal[static_cast<size_t>(i)];
+            if (goal && pair.weight[k] != 0.0)
+                hold_at_goal(*goal, x.row(i), std::copysign(1.0, pair.weight[k]) * pair.normal);
+        }
+}
+
+/// @param along  where the vertex may be pushed to, of unit length or zero
+void SelfResolver::hold_at_goal(const VertexGoal& goal, const Vec3& x, const Vec3& along) {
+    const Vec3 away = x - goal.place;
+    if (goal.max_distance - away.dot(along) < hold_distance && !along.isZero(0.0))
+        hold(goal.vertex, -along, -along.dot(goal.place) - goal.max_distance);
+    if (goal.backstop + away.dot(goal.normal) < hold_distance && !goal.normal.isZero(0.0))
+        hold(goal.vertex, goal.normal, goal.normal.dot(goal.place) - goal.backstop);
 }
 
 void SelfResolver::hold(int vertex, const Vec3& normal, double height) {

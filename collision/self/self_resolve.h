@@ -64,6 +64,7 @@ class SelfResolver {
               const std::vector<VertexGoal>& goals, Points& x);
     void hold_vertices(const SurfaceContacts& contacts, double distance);
     void hold_at_goals(const std::vector<VertexGoal>& goals, const Points& x);
+    void hold_at_goal(const VertexGoal& goal, const Vec3& x, const Vec3& along);
     void hold(int vertex, const Vec3& normal, double height);
     double gap(const ElementPair& elements) const;
     bool release_torn(const SurfaceContacts& contacts, Points& x) const;
@@ -77,9 +78,10 @@ class SelfResolver {
     Points m_rest;  ///< |V| x 3 (m)
     std::vector<std::array<int, 2>> m_edges;
     std::vector<int> m_piece;
-    VectorX m_free_masses;          ///< |V| (kg); none where there are pins
-    std::vector<SelfPair> m_pairs;  ///< of all rounds
-    std::vector<char> m_held;       ///< |V|
+    VectorX m_free_masses;                  ///< |V| (kg); none where there are pins
+    std::vector<SelfPair> m_pairs;          ///< of all rounds
+    std::vector<char> m_held;               ///< |V|
+    std::vector<const VertexGoal*> m_goal;  ///< |V|, scratch memory
     std::vector<int> m_moved;
     Points m_before;  ///< |V| x 3 (m): where the step would have ended
 };
