@@ -88,13 +88,15 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
     fit.clearance = settings.clearance;
     const TriMesh worn_mesh{worn.worn, garment().rest().faces};
     m_start.x = fit_garment(worn_mesh, rest_skin(), m_skin->vertices(0.0), fit);
-    // Fitted to the pose that it was modelled on, no goal is inside the skin there.
-    const Points goals = garment().has_goals()
-                             ? fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit)
-                             : worn.worn;
-    m_skinning = std::make_unique<const GarmentSkinning>(skin_garment(goals, *m_skin));
+    if (garment().has_goals()) {
+        // Fitted to the pose that it was modelled on, no goal is inside the skin there.
+        const Points goals = fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit);
+        m_skinning = std::make_unique<const GarmentSkinning>(skin_garment(goals, *m_skin));
+    }
     m_band = std::make_unique<const SkinBinding>(TriMesh{m_skin->vertices(0.0), *m_skin->faces()},
                                                  m_start.x(garment().pins(), Eigen::all));
+    m_slip = std::make_unique<const SlipCheck>(
+        garment(), m_start.x, TriMesh{m_skin->vertices(0.0), *m_skin->faces()}, m_skin->height());
     const int available = m_skin->frame_count(frame_time()) - 1;
     if (available < 1)
         throw ArgumentError(settings.character, "its animation is shorter than one frame",
@@ -107,20 +109,15 @@ Points CharacterScene::skin(double time) const {
 }
 
 std::string CharacterScene::loss(const Boundary& boundary, const Points& x) const {
-    constexpr double far = 0.3;  // m
-    const Vec3 moved = x.colwise().mean() - boundary.goals.x1.colwise().mean();
-    if (moved.norm() <= far) return "";
-    return garment().pins().empty() && !garment().has_goals()
-               ? "the garment slid off: give --pin LOW HIGH, the heights of what holds it"
-               : "the garment came off the body";
+    return slip_message(m_slip->slips(boundary.obstacles[0].x1, x));
 }
 
 Boundary CharacterScene::boundary(double t0, double t1) const {
     Boundary boundary;
     boundary.obstacles.push_back(m_skin->obstacle(std::max(0.0, t0), std::max(0.0, t1)));
     boundary.pin_targets = m_band->positions(boundary.obstacles[0].x1);
-    // Garments without limits do not look at them; loss() does.
-    boundary.goals = skinned_goals(*m_skinning, *m_skin, std::max(0.0, t0), std::max(0.0, t1));
+    if (garment().has_goals())
+        boundary.goals = skinned_goals(*m_skinning, *m_skin, std::max(0.0, t0), std::max(0.0, t1));
     return boundary;
 }
 

@@ -9,6 +9,7 @@
 #include "data/body/skin_binding.h"
 #include "data/body/welded_character.h"
 #include "data/files/painted_mesh.h"
+#include "demos/bake/slip_check.h"
 #include "demos/compare/comparison_scene.h"
 
 namespace cloth {
@@ -49,7 +50,7 @@ class CharacterScene : public ComparisonScene {
     /// Fitted to the first pose.
     ClothState start() const override { return m_start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
-    /// The garment is 0.3 m from where the skin would have taken it.
+    /// A piece of the garment slid off, see SlipCheck.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
@@ -61,7 +62,8 @@ class CharacterScene : public ComparisonScene {
     std::shared_ptr<const WeldedCharacter> m_skin;
     ClothState m_start;
     std::unique_ptr<const SkinBinding> m_band;
-    std::unique_ptr<const GarmentSkinning> m_skinning;
+    std::unique_ptr<const GarmentSkinning> m_skinning;  ///< if goals are painted
+    std::unique_ptr<const SlipCheck> m_slip;
     std::vector<std::string> m_notes;
     int m_lead_in_frames;
 };

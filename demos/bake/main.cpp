@@ -59,10 +59,10 @@ void run(const BakeOptions& options) {
                                       ? options.out
                                       : unfinished_cache(options.out)) +
                                  "; the same command with --resume goes on");
-    if (!problem.empty()) std::printf("warning: %s\n", problem.c_str());
     for (const BakedMesh& mesh : meshes)
         std::printf("%s, of the mesh %s\n", mesh.cache->path().c_str(),
                     rest_file(mesh.cache->path()).c_str());
+    if (!problem.empty()) throw std::runtime_error(problem);
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ void Panel::draw_report(const ViewerFrame& frame) const {
     row("tangles", frame.counts_tangles ? std::to_string(report.tangles) : "counted in layers only",
         report.tangles > 0);
     if (report.tunnelled) row("tunnelled", text_of("%.1f mm thick", 1e3 * *report.tunnelled), true);
-    if (!frame.problem.empty()) row("problem", frame.problem, true);
+    if (!frame.problem.empty()) warn(frame.problem);
 }
 
 }  // namespace cloth
