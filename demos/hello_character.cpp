@@ -50,9 +50,10 @@ cloth::WeldedCharacter load_skin(const Options& options) {
     cloth::WeldedCharacter skin(options.character, options.skin, options.weld);
     cloth::check_height(options.character, skin);
     cloth::check_surface(options.character, skin);
-    std::printf("character  %s: %d vertices, %.2f m high, animation of %.2f s\n",
-                options.character.c_str(), static_cast<int>(skin.rest().vertices.rows()),
-                skin.height(), skin.duration());
+    std::printf("character  %s: %d vertices, %.2f m high, ", options.character.c_str(),
+                static_cast<int>(skin.rest().vertices.rows()), skin.height());
+    skin.duration() > 0.0 ? std::printf("animation of %.2f s\n", skin.duration())
+                          : std::printf("no animation: it stands\n");
     return skin;
 }
 
@@ -147,7 +148,8 @@ Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
     const cloth::GarmentSkinning skinning = cloth::skin_garment(garment.rest().vertices, skin);
 
     constexpr double dt = 1.0 / 30.0;
-    const double end = options.settle + (options.seconds > 0 ? options.seconds : skin.duration());
+    const double length = skin.duration() > 0.0 ? skin.duration() : 3.0;
+    const double end = options.settle + (options.seconds > 0 ? options.seconds : length);
     Outcome outcome;
     for (int frame = 0; frame * dt < end; ++frame) {
         // The first pose is held for a while, so that the cloth comes to hang.
@@ -199,7 +201,8 @@ int read_options(int argc, char** argv, Options& options) {
     app.add_option("--solver", options.solver, "with or without a network")
         ->check(CLI::IsMember({"small", "quasi-newton"}));
     app.add_option("--settle", options.settle, "the first pose is held for so long (s)");
-    app.add_option("--seconds", options.seconds, "length of the run; the animation's if not given");
+    app.add_option("--seconds", options.seconds,
+                   "length of the run; if not given, the animation's, or 3 s");
     app.add_option("--out", options.out, "folder for garment.obj and character.obj at the end")
         ->check(CLI::ExistingDirectory);
     try {

@@ -44,11 +44,11 @@ class CharacterReader {
         Assimp::Importer importer;
         const aiScene& scene = open(importer);
         add_nodes(*scene.mRootNode, -1);
-        add_animation(find_animation(scene, animation));
+        if (const aiAnimation* found = find_animation(scene, animation)) add_animation(*found);
         add_meshes(*scene.mRootNode, scene, mesh_name);
         if (m_faces.empty())
             fail("mesh " + mesh_name, "there is no such mesh with triangles",
-                 "give the name of a mesh in the file, or none for all");
+                 "give one of" + mesh_names(scene) + ", or no name for all of them");
         finish();
         return std::move(m_rig);
     }
@@ -86,17 +86,18 @@ class CharacterReader {
         return found->second;
     }
 
-    const aiAnimation& find_animation(const aiScene& scene, const std::string& name) const {
+    /// @return  null: none is asked for, and there is none
+    const aiAnimation* find_animation(const aiScene& scene, const std::string& name) const {
         std::string names;
         for (unsigned i = 0; i < scene.mNumAnimations; ++i) {
             const std::string other = scene.mAnimations[i]->mName.C_Str();
-            if (name.empty() || other == name) return *scene.mAnimations[i];
+            if (name.empty() || other == name) return scene.mAnimations[i];
             names += " '" + other + "'";
         }
-        if (names.empty())
-            fail("", "has no animation",
-                 "export it with an animation; load_mesh() reads what does not move");
-        fail("animation " + name, "there is no such animation", "give one of" + names);
+        if (name.empty()) return nullptr;
+        fail("animation " + name, "there is no such animation",
+             names.empty() ? "leave the name out: the file has no animation, and stands still"
+                           : "give one of" + names);
     }
 
     void add_animation(const aiAnimation& animation) {
@@ -155,6 +156,13 @@ class CharacterReader {
         }
         for (unsigned i = 0; i < node.mNumChildren; ++i)
             add_meshes(*node.mChildren[i], scene, name);
+    }
+
+    static std::string mesh_names(const aiScene& scene) {
+        std::string names;
+        for (unsigned m = 0; m < scene.mNumMeshes; ++m)
+            names += std::string(" '") + scene.mMeshes[m]->mName.C_Str() + "'";
+        return names.empty() ? " those of another file: this one has none" : names;
     }
 
     void add_mesh(const aiMesh& mesh, int node) {

@@ -30,7 +30,8 @@ struct CharacterJoint {
     Eigen::Affine3d offset = Eigen::Affine3d::Identity();
 };
 
-/// Skin, skeleton and one animation of a file, in the file's units.
+/// Skin, skeleton and one animation of a file, in the file's units. Without an animation there are
+/// no tracks, and without a skeleton there is a joint for each mesh.
 struct CharacterRig {
     std::vector<CharacterNode> nodes;
     std::vector<CharacterTrack> tracks;
@@ -43,7 +44,7 @@ struct CharacterRig {
 
 /// Reads a rig with assimp. Vertices at exactly the same position of a mesh become one; vertices
 /// without weights follow the node that holds their mesh.
-/// @param animation  its name in the file; empty: the first one
+/// @param animation  its name in the file; empty: the first one, or none if there is none
 /// @param mesh_name  the mesh or node that is skin; empty: all meshes
 /// @throws LoadError if the file cannot be read or has no such mesh or animation, if its bones name
 ///         joints that do not exist, or if its numbers are not finite

@@ -9,14 +9,15 @@
 namespace cloth {
 
 struct CharacterSettings {
-    std::string animation;  ///< its name in the file; empty: the first one
+    std::string animation;  ///< its name in the file; empty: the first one, if there is one
     std::string mesh_name;  ///< the mesh that is skin; empty: all meshes
     double scale = 1.0;  ///< file units to metres, where the file does not say itself, 1e-6 to 1e6
     double friction = 0.5;  ///< of the skin against cloth (Coulomb), 0 to 1.5
 };
 
 /// A character that a file brings with skeleton, skin weights and animation (glTF, COLLADA, FBX and
-/// other formats that assimp reads).
+/// other formats that assimp reads). Without an animation it stands in the pose of the file, and
+/// its duration() is 0.
 ///
 ///     const SkinnedCharacter character("dancer.gltf");
 ///     boundary.obstacles = {character.obstacle(t, t + dt)};

@@ -97,10 +97,14 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
                                                  m_start.x(garment().pins(), Eigen::all));
     m_slip = std::make_unique<const SlipCheck>(
         garment(), m_start.x, TriMesh{m_skin->vertices(0.0), *m_skin->faces()}, m_skin->height());
-    const int available = m_skin->frame_count(frame_time()) - 1;
-    if (available < 1)
-        throw ArgumentError(settings.character, "its animation is shorter than one frame",
-                            "give a file with an animation, or its name with --motion");
+    int available = m_skin->frame_count(frame_time()) - 1;
+    if (available < 1) {
+        available = settings.steps == 0 ? 3 * settings.rate - 1 : settings.steps;
+        m_notes.push_back(settings.character +
+                          " does not move (it has no animation, or one of a single pose): it "
+                          "stands for " +
+                          std::to_string(available + 1) + " frames");
+    }
     set_length(settings.steps == 0 ? available : std::min(settings.steps, available), 0);
 }
 

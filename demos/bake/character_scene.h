@@ -29,7 +29,7 @@ struct CharacterSceneSettings {
     std::string fabric = "soft";  ///< see fabric_named()
     double settle = 0.5;          ///< the first pose is held for so long (s), 0 to 60
     int rate = 30;                ///< frames per second
-    int steps = 0;                ///< of the animation; 0: all
+    int steps = 0;                ///< of the animation; 0: all, or 3 s of a character that stands
 };
 
 /// A garment on an animated character, and near its skin as far as goals are painted in its file.
@@ -41,7 +41,7 @@ class CharacterScene : public ComparisonScene {
     explicit CharacterScene(const CharacterSceneSettings& settings);
 
     const TriMesh& rest_skin() const { return m_skin->rest(); }
-    /// What is to be told of the garment's file, a sentence each.
+    /// What is to be told of the files, a sentence each.
     const std::vector<std::string>& notes() const { return m_notes; }
     /// Skin of the character at a time of the clock (|V| x 3, m).
     Points skin(double time) const;

@@ -31,7 +31,9 @@ void tell_scene(const BakeScene& scene, const BakeOptions& options) {
                 static_cast<int>(scene.cloth->garment().vertex_count()), scene.frames(),
                 options.rate, options.solver.c_str());
     for (const std::string& note : scene.notes) std::printf("%s\n", note.c_str());
-    if (options.frames > scene.frames()) std::printf("the motion has no more than these frames\n");
+    if (options.frames > scene.frames())
+        std::printf("--frames %d: the motion has no more than %d\n", options.frames,
+                    scene.frames());
     if (options.resume) std::printf("frames that are there are computed again, and compared\n");
 }
 

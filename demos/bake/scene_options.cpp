@@ -12,8 +12,8 @@ namespace {
 void add_character(CLI::App& app, SceneOptions& options) {
     CharacterSceneSettings& character = options.character;
     app.add_option("--character", character.character,
-                   "rigged and animated file (.glb, .fbx, ...) that wears a mesh file,\n"
-                   "instead of the project's body")
+                   "file (.glb, .fbx, ...) of a rigged and animated character, or of one that\n"
+                   "stands, that wears a mesh file instead of the project's body")
         ->type_name("FILE");
     app.add_option("--skin", character.skin.mesh_name, "its mesh that is skin (default: all)")
         ->type_name("NAME");

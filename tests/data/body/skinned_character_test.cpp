@@ -138,9 +138,24 @@ TEST_F(CharacterFile, WhatIsMissingIsNamed) {
                       "give one of 'Wuson_Run' 'Wuson_Walk' 'Wuson_Bind'");
     settings = {};
     settings.mesh_name = "Tail";
-    expect_load_error([&] { SkinnedCharacter character(bison, settings); }, bison, "mesh Tail");
+    expect_load_error([&] { SkinnedCharacter character(bison, settings); }, bison,
+                      "there is no such mesh with triangles. Remedy: give one of '");
+    settings = {};
+    settings.animation = "swim";
     const std::string duck = model_path("Collada/duck.dae");
-    expect_load_error([&] { SkinnedCharacter character(duck); }, duck, "has no animation");
+    expect_load_error([&] { SkinnedCharacter character(duck, settings); }, duck,
+                      "leave the name out: the file has no animation");
+}
+
+TEST(SkinnedCharacter, WithoutAnAnimationItStandsInThePoseOfTheFile) {
+    const SkinnedCharacter duck(model_path("Collada/duck.dae"));  // it has no skeleton, either
+    EXPECT_EQ(duck.duration(), 0.0);
+    EXPECT_EQ(duck.frame_count(1.0 / 30.0), 1);
+    EXPECT_EQ(duck.vertices(1.0), duck.rest_vertices());
+    for (const SkinMatrix& matrix : duck.skin_matrices(1.0)) {
+        EXPECT_LT((matrix.leftCols<3>() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+        EXPECT_LT(matrix.col(3).norm(), 1e-6);
+    }
 }
 
 TEST(WeldedCharacter, IsTheSkinWithoutItsSeamsInEveryPose) {

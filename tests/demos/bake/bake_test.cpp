@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "data/body/body.h"
 #include "data/core/paths.h"
 #include "data/core/read_file.h"
 #include "data/files/cache_format.h"
@@ -157,6 +158,22 @@ TEST_F(Bake, ACharacterThatIsNoSurfaceIsRefusedByItsFile) {
         EXPECT_NE(std::string(error.what()).find("Testwuson.X: edge"), std::string::npos)
             << error.what();
     }
+}
+
+// The project's body as a file of a mesh and nothing else.
+TEST_F(Bake, ACharacterThatDoesNotMoveStandsForAsManyFramesAsAreAskedFor) {
+    BakeOptions options;
+    save_obj(path("statue.obj"), Body::load_default().rest_mesh());
+    options.character.character = path("statue.obj");
+    options.character.garment = "tshirt_1000";
+    const BakeScene scene = make_bake_scene(options);
+    EXPECT_EQ(scene.frames(), 90);
+    EXPECT_EQ(scene.skin(0.0), scene.skin(2.0));
+    ASSERT_EQ(scene.notes.size(), 1u);
+    EXPECT_NE(scene.notes[0].find("statue.obj does not move"), std::string::npos);
+    EXPECT_NE(scene.notes[0].find("it stands for 90 frames"), std::string::npos);
+    options.character.steps = 199;
+    EXPECT_EQ(make_bake_scene(options).frames(), 200);
 }
 
 TEST_F(Bake, AGarmentThatFallsOffIsToldOnce) {
