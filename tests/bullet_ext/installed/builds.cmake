@@ -10,14 +10,18 @@ set(here ${CMAKE_CURRENT_LIST_DIR})
 set(demos ${SOURCE}/demos)
 set(sources ${here}/programs/passes_meshes.cpp ${here}/programs/passes_states.cpp)
 if(NOT ONLY_PASSES)
-  list(APPEND sources ${demos}/hello_cloth.cpp ${demos}/hello_tshirt.cpp ${demos}/external/main.cpp)
+  list(APPEND sources ${demos}/hello_cloth.cpp ${demos}/hello_tshirt.cpp ${demos}/external/main.cpp
+       ${demos}/external/own_character.cpp)
 endif()
 set(modules_of_passes_meshes fastcloth-authoring)
 set(modules_of_passes_states "fastcloth-bullet fastcloth-physics")
 set(modules_of_hello_cloth fastcloth)
 set(modules_of_hello_tshirt "fastcloth fastcloth-body")
 set(modules_of_main fastcloth)
+set(modules_of_own_character "fastcloth fastcloth-body")
 set(arguments_of_hello_tshirt "01_01 5")
+set(arguments_of_own_character "/usr/share/assimp/models/X/BCN_Epileptic.X \
+${SOURCE}/data/assets/garments/cape.obj 0.39 1.0")
 
 list(JOIN sources "|" joined)
 run("configure" works ${CMAKE_COMMAND} -G Ninja -S ${here}/programs -B ${WORK}/build
