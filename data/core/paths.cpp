@@ -23,15 +23,18 @@ std::string asset_path(const std::string& relative, const std::string& installed
     const std::string chosen = folder("CLOTH_ASSETS", "");
     std::vector<std::string> folders = {chosen};
     if (chosen.empty()) folders = {installed, CLOTH_ASSETS_DIR, CLOTH_INSTALL_ASSETS_DIR};
-    fs::path path;
+    std::string searched;
     for (const std::string& place : folders) {
         if (place.empty()) continue;
-        path = fs::path(place) / relative;
+        const fs::path path = fs::path(place) / relative;
         if (fs::exists(path)) return path.string();
+        searched += (searched.empty() ? "" : " and ") + place;
     }
-    throw LoadError(path.string(), "", "no such file",
-                    "set the environment variable CLOTH_ASSETS to the project's data/assets, or to "
-                    "share/fastcloth/assets where it is installed");
+    throw LoadError(relative, "",
+                    "no such file in " + searched + (chosen.empty() ? "" : ", by CLOTH_ASSETS"),
+                    "set the environment variable CLOTH_ASSETS to PREFIX/share/fastcloth/assets of "
+                    "an installation, which `pkg-config --variable=assets fastcloth` prints, or to "
+                    "data/assets of the source tree");
 }
 
 std::string model_path(const std::string& relative) {

@@ -18,7 +18,15 @@ TEST_F(Paths, FindsWhatTheProjectShips) {
 TEST_F(Paths, AMissingModelNamesThePackage) {
     expect_load_error([] { model_path("no/such.obj"); }, "/usr/share/assimp/models/no/such.obj",
                       "apt-get install assimp-testmodels");
-    expect_load_error([] { asset_path("no_such.json"); }, "no_such.json", "CLOTH_ASSETS");
+}
+
+TEST_F(Paths, AMissingAssetNamesEveryFolderThatWasSearchedAndTheRemedy) {
+    const auto look = [] { asset_path("no_such.json", "/opt/game/assets"); };
+    expect_load_error(look, "no_such.json", "no such file in /opt/game/assets and /");
+    expect_load_error(look, "no_such.json", "pkg-config --variable=assets fastcloth");
+    setenv("CLOTH_ASSETS", "/opt/own", 1);
+    expect_load_error(look, "no_such.json", "no such file in /opt/own, by CLOTH_ASSETS");
+    unsetenv("CLOTH_ASSETS");
 }
 
 TEST_F(Paths, EnvironmentVariablesMoveTheFolders) {
