@@ -41,6 +41,15 @@ std::vector<std::string> notes_of(const PaintedMesh& painted, const GoalLimits& 
     return notes;
 }
 
+/// What the user is told of clothes that were not made for this character.
+void note_wardrobe(const std::string& garment, std::vector<std::string>& notes) {
+    const std::vector<std::string> names = garment_names();
+    if (std::find(names.begin(), names.end(), garment) != names.end())
+        notes.push_back("it wears " + garment +
+                        " of the wardrobe, which is cut for the project's body; give --garment "
+                        "FILE for one of its own");
+}
+
 Garment garment_of(const CharacterSceneSettings& settings, const TriMesh& rest,
                    const GoalLimits& limits) {
     return Garment("garment", rest, fabric_named(settings.fabric),
@@ -66,6 +75,7 @@ CharacterScene::WornGarment CharacterScene::read_garment(const CharacterSceneSet
     WeldedMesh welded = weld_mesh(painted.mesh, settings.weld);
     GoalLimits limits = welded_limits(painted.limits, welded);
     std::vector<std::string> notes = notes_of(painted, limits);
+    note_wardrobe(settings.garment, notes);
     return {std::move(welded.mesh), settings.garment_scale * start.x(welded.kept, Eigen::all),
             std::move(limits), std::move(notes)};
 }

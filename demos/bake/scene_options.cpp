@@ -19,6 +19,9 @@ void add_character(CLI::App& app, SceneOptions& options) {
         ->type_name("NAME");
     app.add_option("--character-scale", character.skin.scale, "metres per unit of the file");
     app.add_option("--garment-scale", character.garment_scale, "metres per unit of the file");
+    add_hint(app, "--unit",
+             "import_garment converts units, and writes metres; here give --garment-scale and "
+             "--character-scale, the metres per unit of the files");
     app.add_option("--weld", character.weld, "vertices as near as this become one (m)");
     app.add_option("--clearance", character.clearance, "from skin to cloth at the start (m)");
     app.add_option("--pin", character.pin, "lowest and highest vertex that rides on the skin (m)")

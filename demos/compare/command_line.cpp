@@ -55,6 +55,12 @@ CLI::Option* add_body(CLI::App& app, std::string& body) {
         ->type_name("NAME");
 }
 
+void add_hint(CLI::App& app, const std::string& name, const std::string& hint) {
+    app.add_option_function<std::string>(
+           name, [name, hint](const std::string&) { throw CLI::ValidationError(name, hint); })
+        ->group("");  // --help leaves it out
+}
+
 void parse(CLI::App& app, const std::vector<std::string>& arguments) {
     try {
         app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));

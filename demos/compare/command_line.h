@@ -38,6 +38,9 @@ CLI::Option* add_garment(CLI::App& app, std::string& garment, const std::string&
 /// @param body  kept if the option is not given
 CLI::Option* add_body(CLI::App& app, std::string& body);
 
+/// An option that people look for here and that other programs have: who gives it is told `hint`.
+void add_hint(CLI::App& app, const std::string& name, const std::string& hint);
+
 /// @throws UsageError if the command line is wrong, HelpText if it asks for help
 void parse(CLI::App& app, const std::vector<std::string>& arguments);
 

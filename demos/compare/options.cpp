@@ -52,6 +52,9 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
              "the end: by BDF2 instead of backward Euler;\n"
              "bf16-NAME: its products in bfloat16; @M at the end: in M ms\n"
              "a step, see Stepper::set_max_ms()");
+    add_hint(app, "--character",
+             "bake, viewer and hello_character take one; solvers are compared on the project's "
+             "body");
     add_rate(app, options.rate);
     add_whole_number(app, "--frames", options.frames, 0, 100000,
                      "frames of the motion (default 90; 0: all)");

@@ -169,9 +169,10 @@ TEST_F(Bake, ACharacterThatDoesNotMoveStandsForAsManyFramesAsAreAskedFor) {
     const BakeScene scene = make_bake_scene(options);
     EXPECT_EQ(scene.frames(), 90);
     EXPECT_EQ(scene.skin(0.0), scene.skin(2.0));
-    ASSERT_EQ(scene.notes.size(), 1u);
-    EXPECT_NE(scene.notes[0].find("statue.obj does not move"), std::string::npos);
-    EXPECT_NE(scene.notes[0].find("it stands for 90 frames"), std::string::npos);
+    ASSERT_EQ(scene.notes.size(), 2u);
+    EXPECT_NE(scene.notes[0].find("it wears tshirt_1000 of the wardrobe"), std::string::npos);
+    EXPECT_NE(scene.notes[1].find("statue.obj does not move"), std::string::npos);
+    EXPECT_NE(scene.notes[1].find("it stands for 90 frames"), std::string::npos);
     options.character.steps = 199;
     EXPECT_EQ(make_bake_scene(options).frames(), 200);
 }

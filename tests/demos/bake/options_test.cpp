@@ -53,6 +53,7 @@ TEST(BakeOptions, WhatCannotBeRightIsRefusedByName) {
     EXPECT_NE(with_out({"--frames", "1"}).find("--frames"), std::string::npos);
     EXPECT_NE(with_out({"--rate", "9"}).find("--rate"), std::string::npos);
     EXPECT_NE(with_out({"--fabric", "silk"}).find("silk"), std::string::npos);
+    EXPECT_NE(with_out({"--unit", "cm"}).find("--garment-scale"), std::string::npos);
     EXPECT_NE(with_out({"--frame", "3"}).find("--frame"), std::string::npos);
     EXPECT_NE(with_out({"--character", "a.glb", "--garment", "b.obj", "--pin", "1"}).find("--pin"),
               std::string::npos);

@@ -39,6 +39,8 @@ TEST(CompareOptions, RefusesWhatItDoesNotUnderstandByName) {
         return "";
     };
     EXPECT_NE(message({"--frame", "3"}).find("--frame"), std::string::npos);
+    EXPECT_NE(message({"--character", "dancer.glb"}).find("bake, viewer and hello_character"),
+              std::string::npos);
     EXPECT_NE(message({"--frames", "three"}).find("three"), std::string::npos);
     EXPECT_NE(message({"--frames", "-1"}).find("-1"), std::string::npos);
     EXPECT_NE(message({"--frames"}).find("required"), std::string::npos);
