@@ -164,4 +164,15 @@ TEST(Docs, CommandsNamePresetsThatThereAre) {
                 << page << " names " << preset;
 }
 
+// Who reads a guide from its beginning has built what it runs.
+TEST(Docs, GuidesBuildAPresetBeforeTheyRunItsPrograms) {
+    for (const char* page : {"README.md", "demos/README.md", "data/README.md"}) {
+        const std::string text = read(root / page);
+        for (const std::string& preset : matches(text, "\n    build/([a-z]+)/demos/"))
+            EXPECT_LT(text.find("cmake --build --preset " + preset),
+                      text.find("\n    build/" + preset + "/demos/"))
+                << page << ": " << preset;
+    }
+}
+
 }  // namespace cloth::docs_test
