@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "data/authoring/mesh_quality.h"
@@ -22,7 +24,9 @@ namespace cloth {
 
 namespace {
 
-constexpr double fine_edge = 0.03;     // longer ones cannot follow a limb (m)
+constexpr double fine_edge = 0.03;    // longer ones cannot follow a limb (m)
+constexpr double wanted_edge = 0.02;  // (m)
+constexpr double least_band_ratio = 0.5;
 constexpr double sharp_angle = 8.0;    // solvers dislike sharper ones (degrees)
 constexpr double strong_strain = 0.3;  // of the fit
 constexpr double too_far = 0.3;        // from the skin: nothing is worn there (m)
@@ -40,19 +44,19 @@ double area_of(const TriMesh& mesh) {
     return face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm().sum();
 }
 
-void check_skin(const TriMesh& skin) {
-    validate_mesh("character", skin);
+void check_skin(const std::string& name, const TriMesh& skin) {
+    validate_mesh(name, skin);
     if (signed_volume(skin) < 0.0)
-        throw ArgumentError("character", "it is inside out: its faces look inwards",
+        throw ArgumentError(name, "it is inside out: its faces look inwards",
                             "turn its faces (flip normals) in a mesh editor");
 }
 
-void check_vertices(const TriMesh& mesh) {
+void check_vertices(const std::string& name, const TriMesh& mesh) {
     if (mesh.faces.rows() == 0)
-        throw ArgumentError("garment", "it has no faces", "give a mesh of triangles or polygons");
+        throw ArgumentError(name, "it has no faces", "give a mesh of triangles or polygons");
     for (Eigen::Index i = 0; i < mesh.vertices.rows(); ++i)
         if (!mesh.vertices.row(i).allFinite())
-            throw ArgumentError("garment", "vertex " + std::to_string(i) + " is not finite",
+            throw ArgumentError(name, "vertex " + std::to_string(i) + " is not finite",
                                 "export the mesh again without NaN or infinite coordinates");
 }
 
@@ -103,7 +107,8 @@ class Importer {
             changed(text("%d faces were turned, so that neighbours agree on what is outside",
                          repaired.turned_faces));
         if (repaired.one_sided_pieces > 0)
-            throw ArgumentError("garment", "a part of it has one side only, as a Moebius strip has",
+            throw ArgumentError(m_settings.garment_name,
+                                "a part of it has one side only, as a Moebius strip has",
                                 "cut it there in a mesh editor");
         if (repaired.cut_edges > 0)
             warn(
@@ -159,7 +164,7 @@ class Importer {
             found.begin(), found.end(), [&](const TriMesh& p) { return area_of(p) >= least; });
         if (small == found.begin())
             throw ArgumentError(
-                "garment",
+                m_settings.garment_name,
                 text("it falls into %d pieces, none of which has %.3g %% of its area",
                      static_cast<int>(found.size()), 1e2 * m_settings.smallest_piece),
                 "give a larger --weld, or a smaller --smallest-piece");
@@ -196,7 +201,7 @@ class Importer {
         check_distance(piece);
         if (result.inside_before > m_settings.most_inside)
             throw ArgumentError(
-                "garment",
+                m_settings.garment_name,
                 text("%.0f %% of a piece of %d vertices is inside the skin, up to %.1f mm deep",
                      1e2 * result.inside_before, result.vertices_before,
                      1e3 * result.deepest_before),
@@ -206,22 +211,54 @@ class Importer {
         lead_out(result.worn);
         note_strain(piece, result);
         if (m_settings.vertices > 0) {
-            result.worn = remesh(result.worn, m_settings.vertices, {}, Folds::keep);
+            const TriMesh remeshed = remesh(result.worn, m_settings.vertices, {}, Folds::keep);
+            result.worn = remeshed;
             lead_out(result.worn);
+            note_strain(remeshed, result);
         }
-        result.support = find_support(result.worn, m_skin);
-        result.rest = result.worn.vertices;
-        if (result.support.kind == GarmentSupport::Kind::waistband)
-            result.rest = without_stretch(result.worn.vertices, result.support.upper_edge,
-                                          m_settings.band_width, m_settings.band_ratio);
+        hold(result);
         note_result(result);
         return result;
+    }
+
+    /// What holds each connected piece: one that hangs from the shoulders holds no other.
+    void hold(ImportedGarment& result) {
+        using Kind = GarmentSupport::Kind;
+        const std::vector<int> numbers = face_pieces(result.worn.faces);
+        result.rest = result.worn.vertices;
+        for (int k = 0; k < piece_count(numbers); ++k) {
+            const std::vector<int> vertices = vertices_of(result.worn.faces, numbers, k);
+            const TriMesh piece = piece_of(result.worn, numbers, k);
+            GarmentSupport support = find_support(piece, m_skin);
+            if (m_settings.band_ratio == 1.0 && support.kind == Kind::waistband) {
+                support.kind = Kind::pins;
+                support.upper_edge.clear();
+            }
+            if (support.kind == Kind::waistband)
+                result.rest(vertices, Eigen::all) =
+                    without_stretch(piece.vertices, support.upper_edge, m_settings.band_width,
+                                    m_settings.band_ratio);
+            for (int& i : support.upper_edge) i = vertices[static_cast<size_t>(i)];
+            support.pinned_share = share_between(result.worn.vertices, support);
+            result.piece_support.push_back(std::move(support));
+        }
+        result.support = support_of_all(result.piece_support);
+    }
+
+    /// In the order of the mesh, as piece_of() has them.
+    static std::vector<int> vertices_of(const Faces& faces, const std::vector<int>& numbers,
+                                        int piece) {
+        std::set<int> found;
+        for (size_t f = 0; f < numbers.size(); ++f)
+            if (numbers[f] == piece)
+                for (int c = 0; c < 3; ++c) found.insert(faces(static_cast<Eigen::Index>(f), c));
+        return {found.begin(), found.end()};
     }
 
     void check_distance(const TriMesh& piece) const {
         const double away = smallest_clearance(piece, m_skin);
         if (away > too_far)
-            throw ArgumentError("garment",
+            throw ArgumentError(m_settings.garment_name,
                                 text("a piece of %d vertices is %.2f m from the skin",
                                      static_cast<int>(piece.vertices.rows()), away),
                                 "check unit, origin and axes, or give --move; or leave such pieces "
@@ -263,7 +300,7 @@ class Importer {
         }
         const Vec3 at = mesh.vertices.row(deepest);
         throw ArgumentError(
-            "garment",
+            m_settings.garment_name,
             text("it cannot be led out of the skin: %d vertices stay nearer than %.1f mm, the "
                  "deepest at %.1f mm, (%.3f, %.3f, %.3f)",
                  count, 1e3 * m_clearance, 1e3 * depth, at.x(), at.y(), at.z()),
@@ -278,11 +315,11 @@ class Importer {
                                   (before.vertices.row(a) - before.vertices.row(b)).norm() -
                               1.0);
         std::sort(strains.begin(), strains.end());
-        result.strain_low = strains[strains.size() / 100];
-        result.strain_high = strains[strains.size() * 99 / 100];
+        result.strain_low = std::min(result.strain_low, strains[strains.size() / 100]);
+        result.strain_high = std::max(result.strain_high, strains[strains.size() * 99 / 100]);
         if (result.strain_high > torn)
             throw ArgumentError(
-                "garment",
+                m_settings.garment_name,
                 text("leading it out of the skin would stretch it by %.0f %%: it goes through the "
                      "body",
                      1e2 * result.strain_high),
@@ -297,14 +334,18 @@ class Importer {
         const TriMesh rest{result.rest, result.worn.faces};
         for (const TriMesh& mesh : {rest, result.worn})
             if (!(face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm().minCoeff() > 1e-14))
-                throw ArgumentError("garment", "fitting it squeezed a face to nothing",
+                throw ArgumentError(m_settings.garment_name,
+                                    "fitting it squeezed a face to nothing",
                                     "remesh it with --vertices, or with another number of them");
         result.angle = smallest_angle(rest);
         const auto edges = undirected_edges(result.worn.faces);
-        for (const auto& [a, b] : edges)
-            result.edge_length +=
-                (result.worn.vertices.row(a) - result.worn.vertices.row(b)).norm() /
-                static_cast<double>(edges.size());
+        for (const auto& [a, b] : edges) {
+            const double length =
+                (result.worn.vertices.row(a) - result.worn.vertices.row(b)).norm();
+            const double at_rest = (result.rest.row(a) - result.rest.row(b)).norm();
+            result.edge_length += length / static_cast<double>(edges.size());
+            result.rest_strain = std::min(result.rest_strain, at_rest / length - 1.0);
+        }
         warn_of(result);
     }
 
@@ -313,21 +354,58 @@ class Importer {
         if (result.edge_length > fine_edge || result.angle < sharp_angle)
             warn(
                 text("%s: edges of %.0f mm, smallest angle %.1f degrees; cloth wants 10 to 30 mm "
-                     "and %.0f degrees. Remedy: --vertices 4000",
-                     sort, 1e3 * result.edge_length, result.angle, sharp_angle));
+                     "and %.0f degrees. Remedy: --vertices %d",
+                     sort, 1e3 * result.edge_length, result.angle, sharp_angle,
+                     wanted_vertices(result.worn)));
         if (result.strain_high > strong_strain || result.strain_low < -strong_strain)
             warn(
                 text("%s: leading it out of the skin changed lengths by %+.0f to %+.0f %%: it was "
                      "modelled for another figure or pose",
                      sort, 1e2 * result.strain_low, 1e2 * result.strain_high));
-        if (result.support.sort == "hat" || result.support.sort == "shoes")
+        for (const GarmentSupport& support : result.piece_support) warn_of_support(support);
+    }
+
+    /// A number that makes the edges as long as cloth wants them, and is not the one that was
+    /// tried.
+    int wanted_vertices(const TriMesh& worn) const {
+        const double count = 2.0 / std::sqrt(3.0) * area_of(worn) / (wanted_edge * wanted_edge);
+        int wanted = 100 * static_cast<int>(std::lround(std::clamp(count, 500.0, 6e4) / 100.0));
+        if (std::abs(wanted - m_settings.vertices) <= wanted / 20) wanted += wanted / 500 * 100;
+        return std::min(wanted, 60000);
+    }
+
+    void warn_of_support(const GarmentSupport& support) {
+        const char* sort = support.sort.c_str();
+        if (support.sort == "hat")
             warn(
-                text("%s are stiff, and this is cloth: it will sag. Remedy: leave them to the "
-                     "character's own skinning",
-                     sort));
-        else if (result.support.kind == GarmentSupport::Kind::pins)
+                "a hat is stiff, and this is cloth: it will sag. Remedy: leave it to the "
+                "character's own skinning");
+        else if (support.sort == "shoes")
+            warn(
+                "shoes are stiff, and this is cloth: they will sag. Remedy: leave them to the "
+                "character's own skinning");
+        else if (support.kind == GarmentSupport::Kind::waistband)
+            warn_of_waistband(support);
+        else if (support.kind == GarmentSupport::Kind::pins && support.can_be_pinned())
             warn(text("%s: nothing holds it. Remedy: --pin %.3f %.3f of bake and hello_character",
-                      sort, result.support.pin_low, result.support.pin_high));
+                      sort, support.pin_low, support.pin_high));
+        else if (support.kind == GarmentSupport::Kind::pins)
+            warn(
+                text("%s: nothing holds it, and --pin %.3f %.3f would fix %.0f %% of its vertices. "
+                     "Remedy: paint goals on what is to be held, see data/README.md",
+                     sort, support.pin_low, support.pin_high, 1e2 * support.pinned_share));
+    }
+
+    void warn_of_waistband(const GarmentSupport& support) {
+        const double at_rest = m_settings.band_ratio * support.edge_length;
+        if (support.waist_girth == 0.0 || at_rest <= support.waist_girth) return;
+        const double ratio = std::floor(90.0 * support.waist_girth / support.edge_length) / 100.0;
+        warn(text(
+            "%s: it slides down. Its waistband is %.2f m long at rest, and the waist is %.2f "
+            "m round there. Remedy: %s, or model its upper edge, %.2f m, nearer to the waist",
+            support.sort.c_str(), at_rest, support.waist_girth,
+            ratio >= least_band_ratio ? text("--band-ratio %g", ratio).c_str() : "--pin of bake",
+            support.edge_length));
     }
 
     GarmentImportSettings m_settings;
@@ -345,14 +423,14 @@ void GarmentImportSettings::check() const {
     check_range("GarmentImportSettings.smallest_piece", smallest_piece, 0.0, 1.0);
     if (vertices != 0) check_range("GarmentImportSettings.vertices", vertices, 500, 60000);
     check_range("GarmentImportSettings.band_width", band_width, 0.02, 0.1);
-    check_range("GarmentImportSettings.band_ratio", band_ratio, 0.5, 1.0);
+    check_range("GarmentImportSettings.band_ratio", band_ratio, least_band_ratio, 1.0);
 }
 
 GarmentImport import_garment(const TriMesh& mesh, const TriMesh& skin,
                              const GarmentImportSettings& settings) {
     settings.check();
-    check_vertices(mesh);
-    check_skin(skin);
+    check_vertices(settings.garment_name, mesh);
+    check_skin(settings.skin_name, skin);
     return Importer(skin, settings).run(mesh);
 }
 

@@ -16,8 +16,10 @@ struct GarmentImportSettings {
     double smallest_piece = 0.03;  ///< part of the area; smaller pieces are left out, 0 to 1
     int vertices = 0;              ///< of each garment, remeshed: 500 to 60,000; 0: as they come
     double band_width = 0.04;      ///< of a waistband (m), 0.02 to 0.1
-    double band_ratio = 0.7;       ///< its length at rest by that worn, 0.5 to 1
+    double band_ratio = 0.7;       ///< its length at rest by that worn, 0.5 to 1; 1: no waistband
     bool together = false;         ///< pieces that do not touch are one garment all the same
+    std::string garment_name = "garment";  ///< what messages call it: its file
+    std::string skin_name = "character";   ///< the same of the skin
 
     /// @throws ArgumentError naming the field that is out of range
     void check() const;
@@ -26,8 +28,9 @@ struct GarmentImportSettings {
 /// One garment as a body wears it.
 struct ImportedGarment {
     TriMesh worn;
-    Points rest;  ///< |V| x 3 (m): that of `worn`, but for a waistband, which is shorter
-    GarmentSupport support;
+    Points rest;             ///< |V| x 3 (m): that of `worn`, but for a waistband, which is shorter
+    GarmentSupport support;  ///< of all; vertices of all waistbands
+    std::vector<GarmentSupport> piece_support;  ///< of each connected piece
 
     int vertices_before = 0;    ///< after welding and mending, before remeshing
     double angle_before = 0.0;  ///< smallest one of all faces (degrees)
@@ -38,6 +41,8 @@ struct ImportedGarment {
     double clearance = 0.0;                      ///< smallest distance to the skin as worn (m)
     double strain_low = 0.0, strain_high = 0.0;  ///< of 1 % and 99 % of the edges: what being led
                                                  ///< out of the skin did to their lengths
+    double rest_strain = 0.0;                    ///< of the edge that a waistband makes shortest,
+                                                 ///< rest by worn: 0 without one, or negative
     double edge_length = 0.0;                    ///< mean, as worn (m)
 };
 

@@ -78,7 +78,7 @@ ImportResult import_file(const ImportOptions& options) {
         const std::string worn = names[k] + ".worn.obj";
         std::error_code none;
         std::filesystem::remove(worn, none);  // of an earlier import
-        if (garment.support.kind == GarmentSupport::Kind::waistband) {
+        if (!garment.support.upper_edge.empty()) {
             written[k].worn_file = worn;
             save_obj(worn, garment.worn);
         }

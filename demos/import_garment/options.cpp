@@ -79,7 +79,8 @@ void add_work(CLI::App& app, GarmentImportSettings& work) {
         ->type_name("P");
     app.add_flag("--together", work.together, "pieces that do not touch are one garment");
     app.add_option("--band-ratio", work.band_ratio,
-                   "length of a waistband at rest by that worn, 0.5 to 1 (default 0.7)")
+                   "length of a waistband at rest by that worn, 0.5 to 1 (default 0.7);\n"
+                   "1: no waistband, the garment keeps all its lengths")
         ->type_name("R");
 }
 
@@ -98,6 +99,9 @@ void check(ImportOptions& options, const Units& units) {
         options.goal_colours->check();
     }
     options.import.check();
+    options.import.garment_name = options.file;
+    options.import.skin_name =
+        options.character.empty() ? "the body " + options.body : options.character;
     if (options.name.empty()) options.name = std::filesystem::path(options.file).stem().string();
     if (options.name.empty() || options.name.find_first_of("/+") != std::string::npos)
         throw UsageError("--name " + options.name + ": give a name without / and +");

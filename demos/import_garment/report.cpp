@@ -16,6 +16,17 @@ std::string line(const char* format, Values... values) {
     return std::string(text) + "\n";
 }
 
+nlohmann::ordered_json pins_json(const GarmentSupport& support) {
+    return {{"low_m", rounded_number(support.pin_low)},
+            {"high_m", rounded_number(support.pin_high)}};
+}
+
+/// Nothing without a waistband.
+nlohmann::ordered_json band_number(const GarmentSupport& support, double value) {
+    if (support.kind != GarmentSupport::Kind::waistband) return {};
+    return rounded_number(value);
+}
+
 nlohmann::ordered_json garment_json(const ImportedGarment& garment, const WrittenGarment& written) {
     const GarmentSupport& support = garment.support;
     nlohmann::ordered_json row = {
@@ -36,11 +47,17 @@ nlohmann::ordered_json garment_json(const ImportedGarment& garment, const Writte
         {"clearance_mm", rounded_number(1e3 * garment.clearance)},
         {"strain_1_percent", rounded_number(garment.strain_low)},
         {"strain_99_percent", rounded_number(garment.strain_high)},
+        {"waistband_strain", rounded_number(garment.rest_strain)},
         {"pins", nullptr},
         {"waistband_vertices", support.upper_edge}};
-    if (support.kind != GarmentSupport::Kind::shoulders)
-        row["pins"] = {{"low_m", rounded_number(support.pin_low)},
-                       {"high_m", rounded_number(support.pin_high)}};
+    if (support.can_be_pinned()) row["pins"] = pins_json(support);
+    for (const GarmentSupport& piece : garment.piece_support)
+        row["pieces"].push_back(
+            {{"sort", piece.sort},
+             {"held_by", name_of(piece.kind)},
+             {"waistband_worn_m", band_number(piece, piece.edge_length)},
+             {"waist_girth_m", band_number(piece, piece.waist_girth)},
+             {"pins", piece.can_be_pinned() ? pins_json(piece) : nlohmann::ordered_json()}});
     return row;
 }
 
@@ -49,14 +66,41 @@ std::string holding_text(const GarmentSupport& support) {
     char pins[64];
     std::snprintf(pins, sizeof pins, "--pin %.3f %.3f", support.pin_low, support.pin_high);
     if (support.kind == GarmentSupport::Kind::waistband)
-        return "a waistband along its upper edge; or, on a --character, " + std::string(pins);
-    return "nothing: pin it by " + std::string(pins);
+        return "a waistband along its upper edge" +
+               (support.can_be_pinned() ? "; or, on a --character, " + std::string(pins) : "");
+    return support.can_be_pinned() ? "nothing: pin it by " + std::string(pins)
+                                   : "nothing: paint goals on it, see data/README.md";
+}
+
+/// A piece that hangs from the shoulders does not hold another one.
+std::string holding_lines(const ImportedGarment& garment) {
+    if (garment.piece_support.size() == 1)
+        return line("  held by      %s", holding_text(garment.support).c_str());
+    std::string text;
+    for (const GarmentSupport& piece : garment.piece_support)
+        text += line("  held by      %s: %s", piece.sort.c_str(),
+                     piece.kind == GarmentSupport::Kind::waistband
+                         ? "a waistband along its upper edge"  // pins would fix the others, too
+                         : holding_text(piece).c_str());
+    return text;
+}
+
+/// What a waistband changes.
+std::string band_lines(const ImportedGarment& garment) {
+    std::string text;
+    for (const GarmentSupport& piece : garment.piece_support)
+        if (piece.kind == GarmentSupport::Kind::waistband)
+            text += line(
+                "  waistband    %.2f m round as worn, up to %.0f %% shorter at rest; the waist "
+                "is %.2f m round",
+                piece.edge_length, -1e2 * garment.rest_strain, piece.waist_girth);
+    return text;
 }
 
 std::string garment_text(const ImportedGarment& garment, const WrittenGarment& written) {
     return line("%s", written.file.c_str()) +
-           line("  is           %s", garment.support.sort.c_str()) +
-           line("  held by      %s", holding_text(garment.support).c_str()) +
+           line("  is           %s", garment.support.sort.c_str()) + holding_lines(garment) +
+           band_lines(garment) +
            line("  vertices     %d, before %d; mean edge %.1f mm",
                 static_cast<int>(garment.worn.vertices.rows()), garment.vertices_before,
                 1e3 * garment.edge_length) +
@@ -64,7 +108,7 @@ std::string garment_text(const ImportedGarment& garment, const WrittenGarment& w
                 garment.angle_before) +
            line("  inside       %.1f %% of the vertices, before %.1f %%, up to %.1f mm deep",
                 1e2 * garment.inside, 1e2 * garment.inside_before, 1e3 * garment.deepest_before) +
-           line("  clearance    %.2f mm; lengths changed by %+.1f to %+.1f %%",
+           line("  clearance    %.2f mm; being led out changed lengths by %+.1f to %+.1f %%",
                 1e3 * garment.clearance, 1e2 * garment.strain_low, 1e2 * garment.strain_high);
 }
 
@@ -117,7 +161,7 @@ std::string next_text(const ImportOptions& options, const GarmentImport& import,
             std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
             scene += number;
         }
-        if (support.kind == GarmentSupport::Kind::pins) {
+        if (support.kind == GarmentSupport::Kind::pins && support.can_be_pinned()) {
             std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low,
                           support.pin_high);
             scene += number;

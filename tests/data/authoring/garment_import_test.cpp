@@ -53,6 +53,77 @@ std::string refusal(const TriMesh& mesh, const TriMesh& on = person()) {
     return "";
 }
 
+/// A square sheet with a round hole in its middle, level with its faces upwards: a poncho.
+TriMesh sheet_with_hole(double height, double half, double hole) {
+    constexpr int n = 32;
+    TriMesh sheet{Points((n + 1) * (n + 1), 3), {}};
+    for (int i = 0; i <= n; ++i)
+        for (int k = 0; k <= n; ++k)
+            sheet.vertices.row(i * (n + 1) + k) << half * (2.0 * i / n - 1.0), height,
+                half * (2.0 * k / n - 1.0);
+    std::vector<std::array<int, 3>> faces;
+    const auto add = [&](int a, int b, int c) {
+        double nearest = 1e9;
+        for (const int v : {a, b, c})
+            nearest = std::min(nearest, std::hypot(sheet.vertices(v, 0), sheet.vertices(v, 2)));
+        if (nearest >= hole) faces.push_back({a, b, c});
+    };
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const int a = i * (n + 1) + k, b = a + n + 1;
+            add(a, a + 1, b);
+            add(a + 1, b + 1, b);
+        }
+    sheet.faces.resize(static_cast<Eigen::Index>(faces.size()), 3);
+    for (size_t f = 0; f < faces.size(); ++f)
+        sheet.faces.row(static_cast<Eigen::Index>(f)) << faces[f][0], faces[f][1], faces[f][2];
+    return sheet;
+}
+
+/// A strip around the back of the neck, both of whose ends hang down the chest: a scarf.
+TriMesh long_scarf(double neck_height) {
+    std::vector<Vec3> middle;
+    for (int k = 0; k < 20; ++k) middle.emplace_back(0.12, neck_height - 0.4 + 0.02 * k, 0.2);
+    for (int k = 0; k <= 20; ++k) {
+        const double angle = M_PI * k / 20;
+        middle.emplace_back(0.12 * std::cos(angle), neck_height, 0.2 - 0.33 * std::sin(angle));
+    }
+    for (int k = 0; k < 20; ++k) middle.emplace_back(-0.12, neck_height - 0.02 * (k + 1), 0.2);
+    constexpr int columns = 5;
+    const int rows = static_cast<int>(middle.size());
+    TriMesh scarf{Points(rows * columns, 3), Faces(2 * (rows - 1) * (columns - 1), 3)};
+    int f = 0;
+    for (int r = 0; r < rows; ++r)
+        for (int c = 0; c < columns; ++c) {
+            const Vec3 at = middle[static_cast<size_t>(r)];
+            Vec3 side(at.x(), 0.0, r < 20 || r > rows - 21 ? 0.0 : at.z() - 0.03);
+            scarf.vertices.row(r * columns + c) = at + 0.025 * c * side.normalized();
+            if (r + 1 == rows || c + 1 == columns) continue;
+            const int a = r * columns + c;
+            scarf.faces.row(f++) << a, a + 1, a + columns;
+            scarf.faces.row(f++) << a + 1, a + columns + 1, a + columns;
+        }
+    return scarf;
+}
+
+/// A tube around the y axis.
+TriMesh tube(double low, double high, double radius, const Vec3& centre) {
+    constexpr int around = 48, rows = 12;
+    TriMesh mesh{Points(around * (rows + 1), 3), Faces(2 * around * rows, 3)};
+    int f = 0;
+    for (int r = 0; r <= rows; ++r)
+        for (int k = 0; k < around; ++k) {
+            const double angle = 2.0 * M_PI * k / around;
+            mesh.vertices.row(r * around + k) << centre.x() + radius * std::cos(angle),
+                low + (high - low) * r / rows, centre.z() + radius * std::sin(angle);
+            if (r == rows) continue;
+            const int a = r * around + k, b = r * around + (k + 1) % around;
+            mesh.faces.row(f++) << a, a + around, b;
+            mesh.faces.row(f++) << b, a + around, b + around;
+        }
+    return mesh;
+}
+
 TriMesh holed_person() {
     std::vector<char> keep(static_cast<size_t>(person().faces.rows()), 1);
     for (size_t f = 0; f < 50; ++f) keep[f] = 0;
@@ -97,6 +168,104 @@ TEST(GarmentImport, AWaistbandIsShorterAtRest) {
         EXPECT_GE(skirt.worn.vertices(i, 1), skirt.support.pin_low);
         EXPECT_LE(skirt.worn.vertices(i, 1), skirt.support.pin_high);
     }
+}
+
+TEST(GarmentImport, APonchoAndAScarfKeepTheirLengths) {
+    const double height = person().vertices.col(1).maxCoeff();
+    for (const auto& [name, mesh] : std::vector<std::pair<std::string, TriMesh>>{
+             {"poncho", sheet_with_hole(0.88 * height, 0.48, 0.1)},
+             {"poncho high above", sheet_with_hole(0.95 * height, 0.48, 0.12)},
+             {"long scarf", long_scarf(0.86 * height)}}) {
+        const GarmentImport import = imported(mesh);
+        ASSERT_EQ(import.garments.size(), 1u) << name;
+        const ImportedGarment& garment = import.garments[0];
+        EXPECT_EQ(garment.support.kind, GarmentSupport::Kind::shoulders)
+            << name << ", landing on " << garment.support.landing_area << " m^2";
+        EXPECT_EQ(garment.support.sort, "wrap") << name;
+        EXPECT_EQ(garment.rest, garment.worn.vertices) << name;
+        EXPECT_EQ(garment.rest_strain, 0.0) << name;
+        EXPECT_FALSE(garment.support.can_be_pinned()) << name;
+        EXPECT_FALSE(says(import.warnings, "stiff")) << name;
+    }
+}
+
+TEST(GarmentImport, PinsThatWouldFixMostOfItAreNotProposed) {
+    // Level and in front of the body: nothing is below it that could hold it.
+    TriMesh sheet = sheet_with_hole(1.0, 0.2, 0.0);
+    sheet.vertices.col(2).array() += 0.4;
+    const GarmentImport import = imported(sheet);
+    const GarmentSupport& support = import.garments[0].support;
+    EXPECT_EQ(support.kind, GarmentSupport::Kind::pins);
+    EXPECT_EQ(support.pinned_share, 1.0);
+    EXPECT_FALSE(support.can_be_pinned());
+    EXPECT_TRUE(says(import.warnings, "would fix 100 % of its vertices. Remedy: paint goals"));
+}
+
+TEST(GarmentImport, AWaistbandThatIsTooLongIsSaidWithALengthThatHolds) {
+    const Vec3 waist =
+        centre_of(worn_garment("skirt_1000"),
+                  imported(worn_garment("skirt_1000")).garments[0].support.upper_edge);
+    const double round = imported(worn_garment("skirt_1000")).garments[0].support.waist_girth;
+    EXPECT_GT(round, 0.5);
+    EXPECT_LT(round, 1.1);
+    const TriMesh wide = tube(waist.y() - 0.4, waist.y(), 1.6 * round / (2.0 * M_PI), waist);
+    const GarmentImport import = imported(wide);
+    const ImportedGarment& skirt = import.garments[0];
+    ASSERT_EQ(skirt.support.kind, GarmentSupport::Kind::waistband);
+    EXPECT_NEAR(skirt.support.waist_girth / round, 1.0, 0.03);
+    EXPECT_NEAR(skirt.support.edge_length / round, 1.6, 0.03);
+    EXPECT_TRUE(says(import.warnings, "skirt: it slides down. Its waistband is"));
+    EXPECT_TRUE(says(import.warnings, "Remedy: --band-ratio 0.5")) << import.warnings.size();
+    GarmentImportSettings settings;
+    settings.band_ratio = 0.55;
+    EXPECT_FALSE(says(imported(wide, settings).warnings, "slides down"));
+    // So far from the body, its upper edge is no waistband.
+    const TriMesh away = tube(waist.y() - 0.4, waist.y(), 2.2 * round / (2.0 * M_PI), waist);
+    EXPECT_EQ(imported(away).garments[0].support.kind, GarmentSupport::Kind::pins);
+}
+
+TEST(GarmentImport, WithABandRatioOfOneThereIsNoWaistband) {
+    GarmentImportSettings settings;
+    settings.band_ratio = 1.0;
+    const GarmentImport import = imported(worn_garment("skirt_1000"), settings);
+    const ImportedGarment& skirt = import.garments[0];
+    EXPECT_EQ(skirt.support.kind, GarmentSupport::Kind::pins);
+    EXPECT_EQ(skirt.support.sort, "skirt");
+    EXPECT_TRUE(skirt.support.can_be_pinned());
+    EXPECT_EQ(skirt.rest, skirt.worn.vertices);
+    EXPECT_TRUE(says(import.warnings, "nothing holds it. Remedy: --pin"));
+}
+
+TEST(GarmentImport, TheNumberOfVerticesThatIsProposedMakesEdgesOf20Millimetres) {
+    GarmentImportSettings coarse;
+    coarse.vertices = 500;
+    const GarmentImport import = imported(worn_garment("dress_1000"), coarse);
+    std::string warning;
+    for (const std::string& line : import.warnings)
+        if (line.find("Remedy: --vertices ") != std::string::npos) warning = line;
+    ASSERT_NE(warning, "");
+    GarmentImportSettings proposed;
+    proposed.vertices = std::stoi(warning.substr(warning.rfind(' ') + 1));
+    EXPECT_GT(proposed.vertices, 1000);
+    EXPECT_NEAR(imported(worn_garment("dress_1000"), proposed).garments[0].edge_length, 0.02,
+                0.002);
+}
+
+TEST(GarmentImport, MessagesNameTheFilesThatTheyAreAbout) {
+    GarmentImportSettings settings;
+    settings.garment_name = "skirt.obj";
+    settings.skin_name = "dancer.glb";
+    const TriMesh skirt = worn_garment("skirt_1000");
+    for (const auto& [mesh, on, name] : std::vector<std::tuple<TriMesh, TriMesh, std::string>>{
+             {{skirt.vertices, Faces(0, 3)}, person(), "skirt.obj: "},
+             {scaled(skirt, 3.0), person(), "skirt.obj: "},
+             {skirt, turned(person()), "dancer.glb: "}})
+        try {
+            import_garment(mesh, on, settings);
+            ADD_FAILURE() << "it was taken";
+        } catch (const ArgumentError& error) {
+            EXPECT_EQ(std::string(error.what()).rfind(name, 0), 0u) << error.what();
+        }
 }
 
 TEST(GarmentImport, WhatIsInsideIsLedOut) {
@@ -195,7 +364,18 @@ TEST(GarmentImport, PiecesBecomeGarmentsOrOne) {
     EXPECT_LT(height_over(import.garments[1].worn, import.garments[1].worn, skin()), 1e-9);
     GarmentImportSettings settings;
     settings.together = true;
-    EXPECT_EQ(imported(both, settings).garments.size(), 1u);
+    const GarmentImport suit = imported(both, settings);
+    ASSERT_EQ(suit.garments.size(), 1u);
+    // The shirt hangs from the shoulders; the trousers have to be held all the same.
+    const ImportedGarment& garment = suit.garments[0];
+    EXPECT_EQ(garment.support.sort, "suit");
+    ASSERT_EQ(garment.piece_support.size(), 2u);
+    EXPECT_EQ(garment.piece_support[0].kind, GarmentSupport::Kind::shoulders);
+    EXPECT_EQ(garment.piece_support[1].kind, GarmentSupport::Kind::waistband);
+    const std::vector<int>& edge = garment.support.upper_edge;
+    EXPECT_NEAR(length_of(garment.rest, edge) / length_of(garment.worn.vertices, edge), 0.7, 0.01);
+    const Eigen::Index shirt = worn_garment("tshirt_1000").vertices.rows();
+    EXPECT_EQ(garment.rest.topRows(shirt), garment.worn.vertices.topRows(shirt));
 }
 
 TEST(GarmentImport, RemeshesOnRequest) {
@@ -246,7 +426,7 @@ TEST(GarmentImport, ShoesAndHatsAreSaidToBeStiff) {
     const GarmentImport hat = imported(ball_around(
         box_of([](const auto& x) { return x.y() > 1.5; }), [](double y) { return y > 1.55; }));
     EXPECT_EQ(hat.garments[0].support.sort, "hat");
-    EXPECT_TRUE(says(hat.warnings, "stiff"));
+    EXPECT_TRUE(says(hat.warnings, "a hat is stiff"));
 }
 
 TEST(GarmentImport, IsTheSameEveryTime) {

@@ -94,6 +94,27 @@ TEST_F(ImportFile, PiecesAreFilesAndAnOutfitFromTheOutside) {
     EXPECT_EQ(load_outfit(outfit).part_count(), 2);
 }
 
+TEST_F(ImportFile, ASuitInOnePieceIsReportedPieceByPiece) {
+    save_obj(path("suit.obj"), together(worn_garment("pants_1000"), worn_garment("tshirt_1000")));
+    const ImportResult result = import_file(options_for("suit.obj", {"--together"}));
+    ASSERT_EQ(result.files.size(), 1u);
+    EXPECT_TRUE(std::filesystem::exists(path("out/suit.worn.obj")));
+    EXPECT_NE(result.text.find("held by      top: it hangs from the shoulders"), std::string::npos);
+    EXPECT_NE(result.text.find("held by      trousers: a waistband"), std::string::npos);
+    EXPECT_NE(result.text.find("% shorter at rest; the waist is"), std::string::npos)
+        << result.text;
+    const auto& garment = result.json.at("garments").at(0);
+    EXPECT_EQ(garment.at("pieces").size(), 2u);
+    EXPECT_LT(garment.at("waistband_strain"), -0.29);
+}
+
+TEST_F(ImportFile, WhatTheImporterRefusesNamesTheFile) {
+    TriMesh beside = worn_garment("tshirt_1000");
+    beside.vertices.col(2).array() += 0.12;
+    const std::string message = refusal(options_for(beside));
+    EXPECT_EQ(message.rfind(path("thing.obj") + ": ", 0), 0u) << message;
+}
+
 TEST_F(ImportFile, WrongScalesAxesAndPlacesAreSaidWithTheOptionThatMendsThem) {
     const TriMesh shirt = worn_garment("tshirt_1000");
     TriMesh z_up = shirt;
