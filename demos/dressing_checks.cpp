@@ -42,7 +42,7 @@ std::vector<int> vertices_between(const Points& x, const std::vector<double>& he
 double distance_to_skin(const Garment& garment, const WeldedCharacter& skin) {
     const double away = smallest_clearance(garment.rest(), SurfaceDistance(skin.rest()));
     if (away > 0.3)
-        throw ArgumentError("garment", "it is " + std::to_string(away) + " m from the skin",
+        throw ArgumentError(garment.name(), "it is " + std::to_string(away) + " m from the skin",
                             "check --garment-scale, and that garment and character have the same "
                             "origin and axes");
     return away;

@@ -63,7 +63,7 @@ cloth::Garment load_garment(const Options& options) {
     const cloth::WeldedMesh welded = cloth::weld_mesh(painted.mesh, options.weld);
     const cloth::Fabric fabric =
         options.fabric == "real" ? cloth::Fabric::real_cotton() : cloth::Fabric::soft_cotton();
-    cloth::Garment garment("garment", welded.mesh, fabric,
+    cloth::Garment garment(options.garment, welded.mesh, fabric,
                            cloth::vertices_between(welded.mesh.vertices, options.pin));
     garment = garment.with_goals(cloth::welded_limits(painted.limits, welded));
     if (garment.has_goals()) std::printf("goals      are painted on it: it stays near the skin\n");

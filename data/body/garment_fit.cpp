@@ -64,7 +64,7 @@ Points fit_garment(const TriMesh& garment_rest, const TriMesh& body_from, const 
                    const GarmentFitSettings& settings) {
     check_range("GarmentFitSettings.clearance", settings.clearance, 1e-4, 0.05);
     check_range("GarmentFitSettings.smoothing", settings.smoothing, 0, 500);
-    validate_mesh("fit_garment: garment_rest", garment_rest);
+    validate_mesh(settings.garment_name, garment_rest);
     check_bodies(body_from, body_to);
     Points displacement =
         skin_displacement(garment_rest.vertices, SurfaceDistance(body_from), body_to);
@@ -72,8 +72,9 @@ Points fit_garment(const TriMesh& garment_rest, const TriMesh& body_from, const 
     TriMesh fitted{garment_rest.vertices + displacement, garment_rest.faces};
     const SurfaceDistance body({body_to, body_from.faces});
     if (push_out(fitted, body, settings.clearance) < settings.clearance)
-        throw ArgumentError("fit_garment: body_to", "the garment cannot be kept clear of it",
-                            "give a shape in the same pose, without parts that overlap");
+        throw ArgumentError(settings.garment_name, "the garment cannot be kept clear of the body",
+                            "give a body in the same pose, without parts that overlap, and model "
+                            "the garment outside of the skin");
     return fitted.vertices;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "data/core/mesh.h"
 
 namespace cloth {
@@ -8,6 +10,7 @@ struct GarmentFitSettings {
     double clearance = 0.0045;  ///< the cloth is nowhere nearer to the new body than this (m),
                                 ///< 1e-4 to 0.05
     int smoothing = 40;         ///< rounds of averaging the displacement over the cloth, 0 to 500
+    std::string garment_name = "fit_garment: garment_rest";  ///< what messages call it
 };
 
 /// Carries a garment from one body shape to another: every vertex moves as the nearest point of the

@@ -17,21 +17,6 @@ namespace {
 // A loose garment lies this far below what is worn over it, at most.
 constexpr double kReach = 0.06;  // m
 
-/// Puts the outer garment on over all the inner ones.
-void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit) {
-    std::vector<SurfaceDistance> surfaces;
-    for (const TriMesh& mesh : inner) surfaces.emplace_back(mesh);
-    constexpr int kWearingRounds = 5;  // what clears one layer may come near to another
-    for (int round = 0; round < kWearingRounds; ++round) {
-        const Points before = outer.vertices;
-        for (const SurfaceDistance& surface : surfaces)
-            if (!push_over(outer, surface, Outfit::gap, kReach))
-                throw ArgumentError(outfit, "one garment cannot be put on over another",
-                                    "name the outermost one first");
-        if (outer.vertices == before) return;
-    }
-}
-
 }  // namespace
 
 Faces Outfit::faces_of_part(int part) const {
@@ -44,6 +29,20 @@ Faces Outfit::faces_of_part(int part) const {
     for (size_t row = 0; row < rows.size(); ++row)
         faces.row(static_cast<Eigen::Index>(row)) = all.row(rows[row]);
     return faces;
+}
+
+void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit) {
+    std::vector<SurfaceDistance> surfaces;
+    for (const TriMesh& mesh : inner) surfaces.emplace_back(mesh);
+    constexpr int kWearingRounds = 5;  // what clears one layer may come near to another
+    for (int round = 0; round < kWearingRounds; ++round) {
+        const Points before = outer.vertices;
+        for (const SurfaceDistance& surface : surfaces)
+            if (!push_over(outer, surface, Outfit::gap, kReach))
+                throw ArgumentError(outfit, "one garment cannot be put on over another",
+                                    "name the outermost one first");
+        if (outer.vertices == before) return;
+    }
 }
 
 std::vector<std::string> outfit_parts(const std::string& name) {

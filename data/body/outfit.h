@@ -38,6 +38,11 @@ Outfit load_outfit(const std::string& name, const Fabric& fabric = Fabric::soft_
 /// @throws ArgumentError as fit_garment() does, or if a part cannot be got over the inner ones
 Outfit fit_outfit(const Outfit& outfit, const Body& from, const Body& to);
 
+/// Puts a garment on over all the inner ones, Outfit::gap away from them.
+/// @param outfit  for the message
+/// @throws ArgumentError if it cannot be got over one
+void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit);
+
 /// The parts of an outfit's name.
 std::vector<std::string> outfit_parts(const std::string& name);
 

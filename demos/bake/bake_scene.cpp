@@ -7,11 +7,8 @@ namespace cloth {
 BakeScene make_bake_scene(const SceneOptions& options) {
     if (!options.character.character.empty()) {
         const auto scene = std::make_shared<const CharacterScene>(options.character);
-        return {scene,
-                scene->rest_skin(),
-                [scene](double time) { return scene->skin(time); },
-                {scene->garment().rest().faces},
-                scene->notes()};
+        return {scene, scene->rest_skin(), [scene](double time) { return scene->skin(time); },
+                scene->parts(), scene->notes()};
     }
     BodySceneSettings settings;
     settings.garment = options.garment;

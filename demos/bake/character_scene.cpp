@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "data/body/garment_fit.h"
+#include "data/body/outfit.h"
 #include "data/core/check_range.h"
+#include "data/core/garment_pieces.h"
 #include "data/files/garment_assets.h"
 #include "demos/compare/body_scene.h"
 #include "demos/dressing_checks.h"
@@ -50,54 +52,109 @@ void note_wardrobe(const std::string& garment, std::vector<std::string>& notes) 
                         "FILE for one of its own");
 }
 
-Garment garment_of(const CharacterSceneSettings& settings, const TriMesh& rest,
-                   const GoalLimits& limits) {
-    return Garment("garment", rest, fabric_named(settings.fabric),
-                   vertices_between(rest.vertices, settings.pin))
-        .with_goals(limits);
+/// A garment as its file has it: at rest and as it is worn on the bind pose, which a waistband
+/// makes two shapes.
+struct ReadGarment {
+    Garment rest;
+    Points worn;
+    std::vector<std::string> notes;
+};
+
+ReadGarment read_garment(const CharacterSceneSettings& settings, const std::string& file) {
+    const ClothState start = load_garment_start(file);
+    PaintedMesh painted = load_painted_garment(file, settings.goal_colours);
+    painted.mesh.vertices *= settings.garment_scale;
+    WeldedMesh welded = weld_mesh(painted.mesh, settings.weld);
+    const GoalLimits limits = welded_limits(painted.limits, welded);
+    return {Garment(file, std::move(welded.mesh), fabric_named(settings.fabric)).with_goals(limits),
+            settings.garment_scale * start.x(welded.kept, Eigen::all), notes_of(painted, limits)};
+}
+
+/// Faces of each part of what merge_garments() made.
+std::vector<Faces> faces_of_parts(const Faces& faces, const std::vector<int>& first_vertex) {
+    std::vector<Faces> parts;
+    Eigen::Index first = 0;
+    for (size_t part = 1; part < first_vertex.size(); ++part) {
+        Eigen::Index end = first;
+        while (end < faces.rows() && faces(end, 0) < first_vertex[part]) ++end;
+        parts.emplace_back(faces.middleRows(first, end - first));
+        first = end;
+    }
+    return parts;
+}
+
+/// The outer garments over the inner ones.
+void wear_in_layers(Points& x, const std::vector<Faces>& parts,
+                    const std::vector<int>& first_vertex, const std::string& name) {
+    std::vector<TriMesh> inner;
+    for (size_t part = parts.size(); part-- > 0;) {
+        const int first = first_vertex[part], count = first_vertex[part + 1] - first;
+        TriMesh worn{x.middleRows(first, count), parts[part]};
+        worn.faces.array() -= first;
+        wear_over(worn, inner, name);
+        x.middleRows(first, count) = worn.vertices;
+        inner.push_back(std::move(worn));
+    }
+}
+
+Garment with_pins(const Garment& garment, const std::vector<double>& heights) {
+    return Garment(garment.name(), garment.rest(), garment.fabric(),
+                   vertices_between(garment.rest().vertices, heights))
+        .with_goals(garment.goal_limits());
 }
 
 }  // namespace
 
-/// At rest and as it is worn on the bind pose, which a waistband makes two shapes.
-struct CharacterScene::WornGarment {
-    TriMesh rest;
+struct CharacterScene::WornGarments {
+    std::vector<Garment> garments;
+    MergedGarments merged;
     Points worn;
-    GoalLimits limits;
     std::vector<std::string> notes;
 };
 
-CharacterScene::WornGarment CharacterScene::read_garment(const CharacterSceneSettings& settings) {
+CharacterScene::WornGarments CharacterScene::read_garments(const CharacterSceneSettings& settings) {
     check_range("--garment-scale", settings.garment_scale, 1e-6, 1e6);
-    const ClothState start = load_garment_start(settings.garment);
-    PaintedMesh painted = load_painted_garment(settings.garment, settings.goal_colours);
-    painted.mesh.vertices *= settings.garment_scale;
-    WeldedMesh welded = weld_mesh(painted.mesh, settings.weld);
-    GoalLimits limits = welded_limits(painted.limits, welded);
-    std::vector<std::string> notes = notes_of(painted, limits);
-    note_wardrobe(settings.garment, notes);
-    return {std::move(welded.mesh), settings.garment_scale * start.x(welded.kept, Eigen::all),
-            std::move(limits), std::move(notes)};
+    std::vector<Garment> garments;
+    std::vector<Points> worn;
+    std::vector<std::string> notes;
+    for (const std::string& file : outfit_parts(settings.garment)) {
+        ReadGarment read = read_garment(settings, file);
+        garments.push_back(std::move(read.rest));
+        worn.push_back(std::move(read.worn));
+        notes.insert(notes.end(), read.notes.begin(), read.notes.end());
+        note_wardrobe(file, notes);
+    }
+    MergedGarments merged = merge_garments(settings.garment, garments);
+    Points all(merged.garment.vertex_count(), 3);
+    for (size_t k = 0; k < worn.size(); ++k)
+        all.middleRows(merged.first_vertex[k], worn[k].rows()) = worn[k];
+    return {std::move(garments), std::move(merged), std::move(all), std::move(notes)};
 }
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings)
-    : CharacterScene(settings, character_of(settings), read_garment(settings)) {
+    : CharacterScene(settings, character_of(settings), read_garments(settings)) {
 }
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
-                               std::shared_ptr<const WeldedCharacter> skin, const WornGarment& worn)
-    : ComparisonScene(garment_of(settings, worn.rest, worn.limits), settings.rate),
+                               std::shared_ptr<const WeldedCharacter> skin, WornGarments worn)
+    : ComparisonScene(with_pins(worn.merged.garment, settings.pin), settings.rate),
       m_skin(std::move(skin)),
+      m_parts(faces_of_parts(garment().rest().faces, worn.merged.first_vertex)),
       m_start(ClothState::at_rest(garment())),
-      m_notes(worn.notes),
+      m_notes(std::move(worn.notes)),
       m_lead_in_frames(static_cast<int>(std::lround(settings.settle * settings.rate))) {
     check_range("--clearance", settings.clearance, 1e-3, 0.05);
     check_range("--settle", settings.settle, 0.0, 60.0);
-    distance_to_skin(garment(), *m_skin);
+    for (const Garment& one : worn.garments) distance_to_skin(one, *m_skin);
     GarmentFitSettings fit;
     fit.clearance = settings.clearance;
+    fit.garment_name = settings.garment;
     const TriMesh worn_mesh{worn.worn, garment().rest().faces};
     m_start.x = fit_garment(worn_mesh, rest_skin(), m_skin->vertices(0.0), fit);
+    if (m_parts.size() > 1) {
+        wear_in_layers(m_start.x, m_parts, worn.merged.first_vertex, settings.garment);
+        m_self_contact.thickness = Outfit::thickness;
+    }
     if (garment().has_goals()) {
         // Fitted to the pose that it was modelled on, no goal is inside the skin there.
         const Points goals = fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit);

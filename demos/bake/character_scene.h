@@ -18,7 +18,9 @@ namespace cloth {
 struct CharacterSceneSettings {
     std::string character;  ///< its file
     CharacterSettings skin;
-    std::string garment;         ///< its mesh file; NAME.worn.obj beside NAME.obj is how it is worn
+    /// Its mesh file; NAME.worn.obj beside NAME.obj is how it is worn. Several are joined by +, the
+    /// outermost first, and have self-contact.
+    std::string garment;
     double garment_scale = 1.0;  ///< metres per unit of the file, 1e-6 to 1e6
     double weld = 1e-4;          ///< vertices as near as this become one (m), 0 to 0.01
     double clearance = 4.5e-3;   ///< from skin to cloth at the start (m), 1e-3 to 0.05
@@ -41,6 +43,8 @@ class CharacterScene : public ComparisonScene {
     explicit CharacterScene(const CharacterSceneSettings& settings);
 
     const TriMesh& rest_skin() const { return m_skin->rest(); }
+    /// Faces of each garment, numbered as all vertices are.
+    const std::vector<Faces>& parts() const { return m_parts; }
     /// What is to be told of the files, a sentence each.
     const std::vector<std::string>& notes() const { return m_notes; }
     /// Skin of the character at a time of the clock (|V| x 3, m).
@@ -50,17 +54,20 @@ class CharacterScene : public ComparisonScene {
     /// Fitted to the first pose.
     ClothState start() const override { return m_start; }
     int lead_in_frames() const override { return m_lead_in_frames; }
+    SelfContactSettings self_contact() const override { return m_self_contact; }
     /// A piece of the garment slid off, see SlipCheck.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
  private:
-    struct WornGarment;
+    struct WornGarments;
     CharacterScene(const CharacterSceneSettings& settings,
-                   std::shared_ptr<const WeldedCharacter> skin, const WornGarment& worn);
-    static WornGarment read_garment(const CharacterSceneSettings& settings);
+                   std::shared_ptr<const WeldedCharacter> skin, WornGarments worn);
+    static WornGarments read_garments(const CharacterSceneSettings& settings);
 
     std::shared_ptr<const WeldedCharacter> m_skin;
+    std::vector<Faces> m_parts;  ///< of each garment
     ClothState m_start;
+    SelfContactSettings m_self_contact;
     std::unique_ptr<const SkinBinding> m_band;
     std::unique_ptr<const GarmentSkinning> m_skinning;  ///< if goals are painted
     std::unique_ptr<const SlipCheck> m_slip;

@@ -43,9 +43,11 @@ std::vector<GoalLimits> carried_limits(GarmentImport& import, const PaintedMesh&
 }
 
 /// Garments are kept for the body default, from which fit_outfit() takes them to others.
-void carry_to_default(ImportedGarment& garment, const Body& from, double clearance) {
+void carry_to_default(ImportedGarment& garment, const Body& from, double clearance,
+                      const std::string& file) {
     GarmentFitSettings settings;
     settings.clearance = clearance;
+    settings.garment_name = file;
     const Points worn =
         fit_garment(garment.worn, from.rest_mesh(), Body::load_default().rest(), settings);
     garment.rest += worn - garment.worn.vertices;
@@ -68,7 +70,7 @@ ImportResult import_file(const ImportOptions& options) {
     for (size_t k = 0; k < names.size(); ++k) {
         ImportedGarment& garment = import.garments[k];
         if (wearer.body && options.body != "default")
-            carry_to_default(garment, *wearer.body, options.import.clearance);
+            carry_to_default(garment, *wearer.body, options.import.clearance, options.file);
         written.push_back({names[k] + (limits[k].empty() ? ".obj" : ".ply"), ""});
         const TriMesh rest{garment.rest, garment.worn.faces};
         if (limits[k].empty())

@@ -134,42 +134,54 @@ std::string joined(const std::vector<std::string>& lines, const std::string& hea
     return all;
 }
 
+std::string outfit_name(const GarmentImport& import, const std::vector<WrittenGarment>& written,
+                        const TriMesh& skin) {
+    std::string outfit;
+    for (const size_t k : outermost_first(import, skin))
+        outfit += (outfit.empty() ? "" : "+") + written[k].file;
+    return outfit;
+}
+
+/// The two programs that show and bake a garment on the character.
+std::string character_text(const ImportOptions& options, const GarmentImport& import,
+                           const std::string& garment, const GarmentSupport& support) {
+    std::string scene =
+        " --character " + options.character +
+        (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
+    char number[64];
+    if (options.skin.scale != 1.0) {
+        std::snprintf(number, sizeof number, " --character-scale %.9g", options.skin.scale);
+        scene += number;
+    }
+    scene += " --garment " + garment;
+    if (import.clearance < options.import.clearance) {
+        std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
+        scene += number;
+    }
+    if (support.kind == GarmentSupport::Kind::pins && support.can_be_pinned()) {
+        std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low, support.pin_high);
+        scene += number;
+    }
+    return "  " + options.programs + "viewer" + scene + "\n  " + options.programs + "bake" + scene +
+           " --out out/cloth.pc2 --body out/body.pc2\n";
+}
+
 std::string next_text(const ImportOptions& options, const GarmentImport& import,
                       const std::vector<WrittenGarment>& written, const TriMesh& skin) {
-    std::string text = "next\n";
-    if (options.character.empty()) {
-        std::string outfit;
-        for (const size_t k : outermost_first(import, skin))
-            outfit += (outfit.empty() ? "" : "+") + written[k].file;
-        text += "  " + options.programs + "compare --garment " + outfit + " --body " +
-                options.body + "\n";
-        return text + "  " + options.programs + "bake --garment " + outfit +
+    const std::string head = "next\n", outfit = outfit_name(import, written, skin);
+    if (options.character.empty())
+        return head + "  " + options.programs + "compare --garment " + outfit + " --body " +
+               options.body + "\n  " + options.programs + "bake --garment " + outfit +
                " --out out/cloth.pc2 --body out/body.pc2\n";
-    }
-    for (size_t k = 0; k < written.size(); ++k) {
-        const GarmentSupport& support = import.garments[k].support;
-        std::string scene =
-            " --character " + options.character +
-            (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
-        char number[64];
-        if (options.skin.scale != 1.0) {
-            std::snprintf(number, sizeof number, " --character-scale %.9g", options.skin.scale);
-            scene += number;
-        }
-        scene += " --garment " + written[k].file;
-        if (import.clearance < options.import.clearance) {
-            std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
-            scene += number;
-        }
-        if (support.kind == GarmentSupport::Kind::pins && support.can_be_pinned()) {
-            std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low,
-                          support.pin_high);
-            scene += number;
-        }
-        text += "  " + options.programs + "viewer" + scene + "\n";
-        text +=
-            "  " + options.programs + "bake" + scene + " --out out/cloth.pc2 --body out/body.pc2\n";
-    }
+    // Pins between heights would hold the other garments there, too.
+    const bool one_by_one = std::any_of(
+        import.garments.begin(), import.garments.end(),
+        [](const auto& garment) { return garment.support.kind == GarmentSupport::Kind::pins; });
+    if (!one_by_one)
+        return head + character_text(options, import, outfit, import.garments[0].support);
+    std::string text = head;
+    for (size_t k = 0; k < written.size(); ++k)
+        text += character_text(options, import, written[k].file, import.garments[k].support);
     return text;
 }
 

@@ -192,6 +192,72 @@ TEST_F(Bake, AGarmentThatFallsOffIsToldOnce) {
     EXPECT_NE(told[0].find("slid off: it is "), std::string::npos) << told[0];
 }
 
+TEST_F(Bake, FilesThatAreJoinedByPlusAreWornInLayers) {
+    BakeOptions options = cape("quasi-newton");
+    const TriMesh inner = load_mesh(options.character.garment);
+    TriMesh outer = inner;
+    outer.vertices += 0.01 * vertex_normals(inner.vertices, inner.faces);
+    save_obj(path("outer.obj"), outer);
+    options.character.garment = path("outer.obj") + "+" + options.character.garment;
+    const BakeScene scene = make_bake_scene(options);
+    EXPECT_TRUE(scene.cloth->self_contact().on());
+    ASSERT_EQ(scene.parts.size(), 2u);
+    EXPECT_EQ(scene.parts[0], outer.faces);
+    EXPECT_EQ(scene.parts[1], Faces(inner.faces.array() + static_cast<int>(outer.vertices.rows())));
+    EXPECT_EQ(scene.cloth->garment().vertex_count(), 2 * inner.vertices.rows());
+    EXPECT_EQ(scene.cloth->garment().pins().size() % 2, 0u)
+        << "both are pinned at their upper edge";
+    const auto stepper = make_solver(options.solver, *scene.cloth, {});
+    ClothState state = scene.cloth->start();
+    const Boundary boundary = scene.cloth->frame_boundary(-scene.cloth->lead_in_frames());
+    EXPECT_TRUE(stepper->step(boundary, scene.cloth->frame_time(), state).finite);
+    EXPECT_EQ(scene.cloth->loss(boundary, state.x), "");
+    state.x.bottomRows(inner.vertices.rows()).col(1).array() -= 0.4;
+    EXPECT_EQ(scene.cloth->loss(boundary, state.x), "garment 2 of the outfit came off the body");
+}
+
+TEST_F(Bake, MessagesNameTheGarmentsFile) {
+    BakeOptions options = cape("xpbd-10");
+    TriMesh fin = load_mesh(options.character.garment);
+    const int a = fin.faces(0, 0), b = fin.faces(0, 1);
+    fin.vertices.conservativeResize(fin.vertices.rows() + 2, 3);
+    fin.faces.conservativeResize(fin.faces.rows() + 2, 3);
+    for (const int k : {1, 2}) {
+        const Eigen::Index tip = fin.vertices.rows() - k;
+        fin.vertices.row(tip) = fin.vertices.row(a) + Eigen::RowVector3d(0.01 * k, 0.05, 0.0);
+        fin.faces.row(fin.faces.rows() - k) << a, b, static_cast<int>(tip);
+    }
+    save_obj(path("fin.obj"), fin);
+    TriMesh away = load_mesh(options.character.garment);
+    away.vertices.col(2).array() += 3.0;
+    save_obj(path("away.obj"), away);
+    for (const auto& [file, problem] :
+         std::vector<std::pair<std::string, std::string>>{{"fin.obj", ": edge "},
+                                                          {"away.obj", ": it is "},
+                                                          {"none.obj", ": there is no such"}}) {
+        options.character.garment = asset_path("garments/cape.obj") + "+" + path(file);
+        try {
+            make_bake_scene(options);
+            ADD_FAILURE() << file << " was taken";
+        } catch (const std::exception& error) {
+            EXPECT_EQ(std::string(error.what()).rfind(path(file) + problem, 0), 0u) << error.what();
+        }
+    }
+}
+
+TEST_F(Bake, WhatWasModelledFlatIsNotLostWhenItHangs) {
+    BakeOptions options = cape("xpbd-10");
+    const BakeScene scene = make_bake_scene(options);
+    const Boundary boundary = scene.cloth->frame_boundary(0);
+    Points hanging = boundary.goals.x1;
+    const double top = hanging.col(1).maxCoeff();
+    hanging.col(1) = (top - 3.0 * (top - hanging.col(1).array())).matrix();
+    ASSERT_LT(hanging.col(1).mean(), boundary.goals.x1.col(1).mean() - 0.3);
+    EXPECT_EQ(scene.cloth->loss(boundary, hanging), "");
+    hanging.col(1).array() -= 0.5;
+    EXPECT_NE(scene.cloth->loss(boundary, hanging), "");
+}
+
 TEST_F(Bake, GoalsThatArePaintedInTheFileHoldTheGarmentNearTheSkin) {
     BakeOptions options = cape("quasi-newton");
     const PaintedMesh painted = painted_cape();
