@@ -161,17 +161,23 @@ struct Loop {
     bool level = false;  ///< it goes around what stands, not around an arm that is spread
 };
 
+/// The area vector of a closed polygon (m^2).
+Vec3 area_vector(const Points& x) {
+    const Vec3 centre = x.colwise().mean();
+    Vec3 area = Vec3::Zero();
+    for (Eigen::Index i = 0; i < x.rows(); ++i) {
+        const Vec3 a = x.row(i).transpose() - centre;
+        area += 0.5 * a.cross(x.row((i + 1) % x.rows()).transpose() - centre);
+    }
+    return area;
+}
+
 /// A border may pass by the body on both sides without going around it, as that of a scarf does.
 Loop loop_of(const TriMesh& worn, std::vector<int> vertices, const SurfaceDistance& skin) {
     Loop loop;
     const Points x = worn.vertices(vertices, Eigen::all);
     loop.centre = x.colwise().mean().transpose();
-    Vec3 area = Vec3::Zero();
-    for (Eigen::Index i = 0; i < x.rows(); ++i) {
-        const Vec3 a = x.row(i).transpose() - loop.centre;
-        area += 0.5 * a.cross(x.row((i + 1) % x.rows()).transpose() - loop.centre);
-    }
-    const Vec3 axis = area.normalized();
+    const Vec3 axis = area_vector(x).normalized();
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     std::vector<Point2> flat;
     for (const auto& p : x.rowwise()) flat.emplace_back(p.dot(u), p.dot(v));
@@ -302,6 +308,18 @@ GarmentSupport support_of_all(const std::vector<GarmentSupport>& pieces) {
         all.upper_edge.insert(all.upper_edge.end(), piece.upper_edge.begin(),
                               piece.upper_edge.end());
     return all;
+}
+
+bool lies_on_its_side(const TriMesh& mesh) {
+    std::vector<Vec3> openings;
+    for (const std::vector<int>& loop : boundary_loops(mesh.faces))
+        openings.push_back(area_vector(mesh.vertices(loop, Eigen::all)));
+    if (openings.size() < 2) return false;
+    std::sort(openings.begin(), openings.end(),
+              [](const Vec3& a, const Vec3& b) { return a.norm() > b.norm(); });
+    const Vec3 a = openings[0].normalized(), b = openings[1].normalized();
+    return openings[1].norm() > 0.05 * openings[0].norm() && std::abs(a.dot(b)) > 0.9 &&
+           std::abs(a.y()) < 0.3 && std::abs(b.y()) < 0.3;
 }
 
 double share_between(const Points& x, const GarmentSupport& support) {

@@ -38,6 +38,11 @@ GarmentSupport find_support(const TriMesh& worn, const SurfaceDistance& skin);
 /// @param pieces  not empty
 GarmentSupport support_of_all(const std::vector<GarmentSupport>& pieces);
 
+/// Whether it is a tube, such as a skirt, whose two largest openings look sideways. (Those of
+/// sleeves do, too, but the hem is larger.)
+/// @param mesh  manifold and oriented
+bool lies_on_its_side(const TriMesh& mesh);
+
 /// The part of the vertices between the heights of the pins.
 double share_between(const Points& x, const GarmentSupport& support);
 

@@ -2,10 +2,13 @@
 
 #include <cstdio>
 
+#include "data/authoring/garment_support.h"
 #include "data/body/body_shapes.h"
 #include "data/body/garment_place.h"
 #include "data/body/welded_character.h"
 #include "data/core/errors.h"
+#include "data/core/mesh_repair.h"
+#include "data/core/weld.h"
 #include "data/files/mesh_io.h"
 #include "data/files/mhclo.h"
 #include "demos/compare/arguments.h"
@@ -24,24 +27,30 @@ std::string size_text(const Points& x) {
     return text;
 }
 
-/// The move that puts a garment for a person who stands on the origin on this one.
-std::string move_text(const TriMesh& skin) {
+/// The move that puts a garment for a person who stands on the origin, or whose middle is there, as
+/// MakeHuman has it, on this one.
+std::string move_text(const Points& garment, const TriMesh& skin) {
+    const double low = skin.vertices.col(1).minCoeff(), high = skin.vertices.col(1).maxCoeff();
+    // What was made for one who stands on the origin is hardly below it.
+    const bool middle = garment.col(1).minCoeff() < -0.05 * (high - low);
     const VectorX areas = face_area_vectors(skin.vertices, skin.faces).rowwise().norm();
     Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
     for (Eigen::Index f = 0; f < areas.size(); ++f)
         for (int c = 0; c < 3; ++c)
             centre += areas[f] / (3.0 * areas.sum()) * skin.vertices.row(skin.faces(f, c));
-    char text[160];
+    char text[200];
     std::snprintf(
         text, sizeof text,
-        "--move %.2f %.2f %.2f brings what was made for a person on the origin about here",
-        centre.x(), skin.vertices.col(1).minCoeff(), centre.z());
+        "--move %.2f %.2f %.2f brings what was made for a person %s the origin about here",
+        centre.x(), middle ? 0.5 * (low + high) : low, centre.z(),
+        middle ? "with the middle at" : "who stands on");
     return text;
 }
 
 /// What is said of a garment that is elsewhere.
 [[noreturn]] void refuse_place(const ImportOptions& options, const Points& in_file,
-                               const Points& garment, const TriMesh& skin) {
+                               const TriMesh& mesh, const TriMesh& skin) {
+    const Points& garment = mesh.vertices;
     std::string remedy;
     for (const PlaceGuess& guess : guess_place(in_file, skin.vertices))
         remedy += (remedy.empty() ? "" : ", or ") + std::string("--unit ") + guess.unit.name +
@@ -52,7 +61,11 @@ std::string move_text(const TriMesh& skin) {
         const std::vector<LengthUnit> sizes = plausible_sizes(in_file, skin.vertices);
         for (const LengthUnit& unit : sizes)
             remedy += std::string("in ") + unit.plural + " its size would fit, ";
-        remedy += move_text(skin);
+        remedy += move_text(garment, skin);
+        if (lies_on_its_side(repair_mesh(weld_mesh(mesh, options.import.weld).mesh).mesh))
+            remedy +=
+                ". Its openings look sideways: if it lies on its side, turn it upright in a mesh "
+                "editor";
     }
     throw ArgumentError(options.file,
                         "it is not where the character is: " + size_text(garment) +
@@ -104,7 +117,7 @@ PaintedMesh load_clothes(const ImportOptions& options, const Wearer& wearer) {
     mesh.vertices *= options.scale;
     mesh.vertices.rowwise() += options.move.transpose();
     if (!is_in_place(mesh.vertices, wearer.skin.vertices))
-        refuse_place(options, in_file, mesh.vertices, wearer.skin);
+        refuse_place(options, in_file, mesh, wearer.skin);
     return painted;
 }
 

@@ -1,6 +1,8 @@
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
+#include "data/authoring/garment_support.h"
 #include "data/body/body_shapes.h"
 #include "data/body/outfit.h"
 #include "data/files/painted_mesh.h"
@@ -141,6 +143,32 @@ TEST_F(ImportFile, WrongScalesAxesAndPlacesAreSaidWithTheOptionThatMendsThem) {
         EXPECT_LT((load_garment_mesh(result.files[0]).vertices - shirt.vertices).norm(), 0.01);
         std::filesystem::remove_all(path("out"));
     }
+}
+
+TEST_F(ImportFile, TheMoveThatIsProposedBringsTheGarmentAbout) {
+    // MakeHuman's files have the middle of the body on the origin.
+    TriMesh shirt = worn_garment("tshirt_1000");
+    shirt.vertices.col(1).array() -= 0.85;
+    TriMesh pants = worn_garment("pants_1000");
+    pants.vertices.col(1).array() -= 0.85;
+    const std::string message = refusal(options_for(together(shirt, pants)));
+    const size_t at = message.find("--move ");
+    ASSERT_NE(at, std::string::npos) << message;
+    double x = 1.0, y = 0.0, z = 1.0;
+    ASSERT_EQ(std::sscanf(message.c_str() + at, "--move %lf %lf %lf", &x, &y, &z), 3);
+    EXPECT_NEAR(y, 0.85, 0.1) << message;
+    EXPECT_NE(message.find("with the middle at the origin"), std::string::npos) << message;
+    EXPECT_EQ(message.find("lies on its side"), std::string::npos) << message;
+}
+
+TEST_F(ImportFile, ASkirtThatLiesOnItsSideIsSaid) {
+    TriMesh skirt = worn_garment("skirt_1000");
+    skirt.vertices.col(0).swap(skirt.vertices.col(1));
+    const std::string message = refusal(options_for(skirt));
+    EXPECT_NE(message.find("if it lies on its side, turn it upright"), std::string::npos)
+        << message;
+    for (const char* name : {"skirt_1000", "tshirt_1000", "pants_1000", "tank_top_1000"})
+        EXPECT_FALSE(lies_on_its_side(worn_garment(name))) << name;
 }
 
 TEST_F(ImportFile, BrokenFilesAreRefusedWithARemedy) {
