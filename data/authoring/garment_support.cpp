@@ -161,8 +161,8 @@ struct Loop {
     bool level = false;  ///< it goes around what stands, not around an arm that is spread
 };
 
-/// The area vector of a closed polygon (m^2).
-Vec3 area_vector(const Points& x) {
+/// The area vector of a closed polygon that need not be flat (m^2).
+Vec3 polygon_area(const Points& x) {
     const Vec3 centre = x.colwise().mean();
     Vec3 area = Vec3::Zero();
     for (Eigen::Index i = 0; i < x.rows(); ++i) {
@@ -177,7 +177,7 @@ Loop loop_of(const TriMesh& worn, std::vector<int> vertices, const SurfaceDistan
     Loop loop;
     const Points x = worn.vertices(vertices, Eigen::all);
     loop.centre = x.colwise().mean().transpose();
-    const Vec3 axis = area_vector(x).normalized();
+    const Vec3 axis = polygon_area(x).normalized();
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
     std::vector<Point2> flat;
     for (const auto& p : x.rowwise()) flat.emplace_back(p.dot(u), p.dot(v));
@@ -313,7 +313,7 @@ GarmentSupport support_of_all(const std::vector<GarmentSupport>& pieces) {
 bool lies_on_its_side(const TriMesh& mesh) {
     std::vector<Vec3> openings;
     for (const std::vector<int>& loop : boundary_loops(mesh.faces))
-        openings.push_back(area_vector(mesh.vertices(loop, Eigen::all)));
+        openings.push_back(polygon_area(mesh.vertices(loop, Eigen::all)));
     if (openings.size() < 2) return false;
     std::sort(openings.begin(), openings.end(),
               [](const Vec3& a, const Vec3& b) { return a.norm() > b.norm(); });

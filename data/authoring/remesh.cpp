@@ -297,8 +297,10 @@ TriMesh remesh(const TriMesh& surface, int target_vertices, const std::vector<in
         edge_length *= std::sqrt(ratio);
     }
     const std::vector<int> apart = spaced(surface.vertices, kept, kKeptSpacing * ideal);
-    restore_borders(mesh, surface, apart);
+    // Of the mesh as it is: where its border has slid, restoring that turns faces over, which look
+    // like folds and would be kept.
     std::vector<char> fixed = edge_flags(mesh, keep);
+    restore_borders(mesh, surface, apart);
     keep_inside(mesh, surface, apart, ideal, fixed);
     TriMesh best;
     double best_angle = -1.0;
