@@ -97,12 +97,6 @@ void wear_in_layers(Points& x, const std::vector<Faces>& parts,
     }
 }
 
-Garment with_pins(const Garment& garment, const std::vector<double>& heights) {
-    return Garment(garment.name(), garment.rest(), garment.fabric(),
-                   vertices_between(garment.rest().vertices, heights))
-        .with_goals(garment.goal_limits());
-}
-
 }  // namespace
 
 struct CharacterScene::WornGarments {
@@ -137,7 +131,9 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings)
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
                                std::shared_ptr<const WeldedCharacter> skin, WornGarments worn)
-    : ComparisonScene(with_pins(worn.merged.garment, settings.pin), settings.rate),
+    : ComparisonScene(worn.merged.garment.with_pins(
+                          vertices_between(worn.merged.garment.rest().vertices, settings.pin)),
+                      settings.rate),
       m_skin(std::move(skin)),
       m_parts(faces_of_parts(garment().rest().faces, worn.merged.first_vertex)),
       m_start(ClothState::at_rest(garment())),
