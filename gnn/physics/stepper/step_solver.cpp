@@ -19,6 +19,7 @@ constexpr int most_iterations = 200;  // towards a residual that is asked for
 constexpr double rest_speed = 0.1;  // m/s
 
 constexpr int newton_steps = 4;            // in place of many iterations
+constexpr int iterations_at_goals = 2;     // after Newton's step
 constexpr double stiff_wave_speed = 32.0;  // m/s, along the cloth; real cotton has 170, soft 15
 
 bool is_stiff(const Fabric& fabric) {
@@ -417,6 +418,24 @@ MinimiseReport StepSolver::minimise(const IterationLimits& limits, const Potenti
                                    m_deadline_for_more.earlier(m_contact_ms));
 }
 
+/// A garment that goals hold is thrown about by a character. What few conjugate gradients leave of
+/// that grows from part to part; the history's iterations, whose matrix is solved with exactly,
+/// take it away.
+bool StepSolver::iterates_after_newton() const {
+    return m_parts > 1 && m_settings.quasi_newton.hessian_cg_iterations > 0 &&
+           m_garment->has_goals();
+}
+
+void StepSolver::iterate_after_newton(MinimiseReport& minimum) {
+    m_quasi_newton.set_by_hessian(false);
+    MinimiseReport more = minimise(IterationLimits::exactly(iterations_at_goals), nullptr);
+    m_quasi_newton.set_by_hessian(true);
+    if (!more.finite) return;
+    more.iterations += minimum.iterations;
+    more.out_of_time = more.out_of_time || minimum.out_of_time;
+    minimum = more;
+}
+
 /// From m_x to the minimum, or as far as the limits allow. False: nothing is finite.
 bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits,
                          const PotentialValue* at_x, const ClothState& state, StepReport& report) {
@@ -426,6 +445,7 @@ bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits
         place_pins(*m_garment, boundary, m_x);
         minimum = minimise(limits, nullptr);
     }
+    if (minimum.finite && iterates_after_newton()) iterate_after_newton(minimum);
     m_energy = minimum.energy;
     report.iterations += minimum.iterations;
     report.residual = minimum.residual;

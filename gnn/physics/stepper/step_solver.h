@@ -208,6 +208,8 @@ class StepSolver {
                                        const ClothState& state, StepReport& report);
     const PotentialValue* lower_of_guess_and_prediction(bool guess_known, StepReport& report);
     MinimiseReport minimise(const IterationLimits& limits, const PotentialValue* at_x);
+    bool iterates_after_newton() const;
+    void iterate_after_newton(MinimiseReport& minimum);
     bool descend(const Boundary& boundary, const IterationLimits& limits,
                  const PotentialValue* at_x, const ClothState& state, StepReport& report);
     void project(const Boundary& boundary, const ClothState& state, StepReport& report);

@@ -213,7 +213,8 @@ TEST_F(Bake, FilesThatAreJoinedByPlusAreWornInLayers) {
     EXPECT_TRUE(stepper->step(boundary, scene.cloth->frame_time(), state).finite);
     EXPECT_EQ(scene.cloth->loss(boundary, state.x), "");
     state.x.bottomRows(inner.vertices.rows()).col(1).array() -= 0.4;
-    EXPECT_EQ(scene.cloth->loss(boundary, state.x), "garment 2 of the outfit came off the body");
+    const std::string lost = scene.cloth->loss(boundary, state.x);
+    EXPECT_EQ(lost.find("piece 2 of 2 came off the body"), 0u) << lost;
 }
 
 TEST_F(Bake, MessagesNameTheGarmentsFile) {
