@@ -45,9 +45,10 @@ struct StepSettings {
     double small_step_rate = 120.0;
     /// Small steps of stiff cloth without a start are each one Newton step of so many
     /// conjugate-gradient iterations, 0 to 200, whatever `quasi_newton` says: few iterations of
-    /// that hold stiff cloth back where it could bend. Parts of steps that are cut have many, which
-    /// are not Newton's. 0: they are like those of soft cloth. Stiff is cloth in which waves along
-    /// it, of the speed sqrt((2 mu + lambda) / density), are faster than 32 m/s.
+    /// that hold stiff cloth back where it could bend. Two of `quasi_newton` follow in garments
+    /// with goals. Parts of steps that are cut have many, which are not Newton's. 0: they are like
+    /// those of soft cloth. Stiff is cloth in which waves along it, of the speed sqrt((2 mu +
+    /// lambda) / density), are faster than 32 m/s.
     int stiff_cg_iterations = 10;
     /// Vertices that end closer than this to an obstacle (m), because they left the plane of their
     /// contact, are moved to this distance, 0 to 1e-3.
