@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "data/body/clearance.h"
-#include "data/body/garment_fit.h"
 #include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/core/surface_distance.h"
@@ -16,6 +15,21 @@ namespace {
 
 // A loose garment lies this far below what is worn over it, at most.
 constexpr double kReach = 0.06;  // m
+
+/// Puts the outer garment on over all the inner ones.
+void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit) {
+    std::vector<SurfaceDistance> surfaces;
+    for (const TriMesh& mesh : inner) surfaces.emplace_back(mesh);
+    constexpr int kWearingRounds = 5;  // what clears one layer may come near to another
+    for (int round = 0; round < kWearingRounds; ++round) {
+        const Points before = outer.vertices;
+        for (const SurfaceDistance& surface : surfaces)
+            if (!push_over(outer, surface, Outfit::gap, kReach))
+                throw ArgumentError(outfit, "one garment cannot be put on over another",
+                                    "name the outermost one first");
+        if (outer.vertices == before) return;
+    }
+}
 
 }  // namespace
 
@@ -29,20 +43,6 @@ Faces Outfit::faces_of_part(int part) const {
     for (size_t row = 0; row < rows.size(); ++row)
         faces.row(static_cast<Eigen::Index>(row)) = all.row(rows[row]);
     return faces;
-}
-
-void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit) {
-    std::vector<SurfaceDistance> surfaces;
-    for (const TriMesh& mesh : inner) surfaces.emplace_back(mesh);
-    constexpr int kWearingRounds = 5;  // what clears one layer may come near to another
-    for (int round = 0; round < kWearingRounds; ++round) {
-        const Points before = outer.vertices;
-        for (const SurfaceDistance& surface : surfaces)
-            if (!push_over(outer, surface, Outfit::gap, kReach))
-                throw ArgumentError(outfit, "one garment cannot be put on over another",
-                                    "name the outermost one first");
-        if (outer.vertices == before) return;
-    }
 }
 
 std::vector<std::string> outfit_parts(const std::string& name) {
@@ -75,20 +75,27 @@ Outfit load_outfit(const std::string& name, const Fabric& fabric) {
     return {std::move(merged.garment), std::move(start), std::move(merged.first_vertex)};
 }
 
-Outfit fit_outfit(const Outfit& outfit, const Body& from, const Body& to) {
-    const Garment& garment = outfit.garment;
-    ClothState start = outfit.start;
+Points wear_outfit(const Outfit& outfit, const TriMesh& skin_from, const Points& skin_to,
+                   const GarmentFitSettings& settings) {
+    Points x = outfit.start.x;
     std::vector<TriMesh> inner;
     for (int part = outfit.part_count(); part-- > 0;) {
         const int first = outfit.first_vertex[static_cast<size_t>(part)];
         const int count = outfit.first_vertex[static_cast<size_t>(part) + 1] - first;
-        TriMesh worn{outfit.start.x.middleRows(first, count), outfit.faces_of_part(part)};
+        TriMesh worn{x.middleRows(first, count), outfit.faces_of_part(part)};
         worn.faces.array() -= first;
-        worn.vertices = fit_garment(worn, from.rest_mesh(), to.rest());
-        if (outfit.has_layers()) wear_over(worn, inner, garment.name());
-        start.x.middleRows(first, count) = worn.vertices;
+        worn.vertices = fit_garment(worn, skin_from, skin_to, settings);
+        if (outfit.has_layers()) wear_over(worn, inner, outfit.garment.name());
+        x.middleRows(first, count) = worn.vertices;
         inner.push_back(std::move(worn));
     }
+    return x;
+}
+
+Outfit fit_outfit(const Outfit& outfit, const Body& from, const Body& to) {
+    const Garment& garment = outfit.garment;
+    ClothState start = outfit.start;
+    start.x = wear_outfit(outfit, from.rest_mesh(), to.rest());
     TriMesh rest = garment.rest();
     rest.vertices += start.x - outfit.start.x;
     return {Garment(garment.name(), std::move(rest), garment.fabric(), garment.pins(),

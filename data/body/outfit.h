@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "data/body/body.h"
+#include "data/body/garment_fit.h"
 #include "data/core/cloth_state.h"
 #include "data/core/garment.h"
 
@@ -38,10 +39,13 @@ Outfit load_outfit(const std::string& name, const Fabric& fabric = Fabric::soft_
 /// @throws ArgumentError as fit_garment() does, or if a part cannot be got over the inner ones
 Outfit fit_outfit(const Outfit& outfit, const Body& from, const Body& to);
 
-/// Puts a garment on over all the inner ones, Outfit::gap away from them.
-/// @param outfit  for the message
-/// @throws ArgumentError if it cannot be got over one
-void wear_over(TriMesh& outer, const std::vector<TriMesh>& inner, const std::string& outfit);
+/// Positions (|V| x 3, m) at which the outfit is worn on another skin: each part where the skin
+/// below it has moved to, clear of it, and the outer parts over the inner ones.
+/// @param skin_from  on which it is worn at outfit.start
+/// @param skin_to    its vertices elsewhere
+/// @throws ArgumentError as fit_garment() does, or if a part cannot be got over the inner ones
+Points wear_outfit(const Outfit& outfit, const TriMesh& skin_from, const Points& skin_to,
+                   const GarmentFitSettings& settings = {});
 
 /// The parts of an outfit's name.
 std::vector<std::string> outfit_parts(const std::string& name);

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "data/body/garment_fit.h"
 #include "data/body/outfit.h"
 #include "data/core/check_range.h"
 #include "data/core/garment_pieces.h"
@@ -70,39 +69,11 @@ ReadGarment read_garment(const CharacterSceneSettings& settings, const std::stri
             settings.garment_scale * start.x(welded.kept, Eigen::all), notes_of(painted, limits)};
 }
 
-/// Faces of each part of what merge_garments() made.
-std::vector<Faces> faces_of_parts(const Faces& faces, const std::vector<int>& first_vertex) {
-    std::vector<Faces> parts;
-    Eigen::Index first = 0;
-    for (size_t part = 1; part < first_vertex.size(); ++part) {
-        Eigen::Index end = first;
-        while (end < faces.rows() && faces(end, 0) < first_vertex[part]) ++end;
-        parts.emplace_back(faces.middleRows(first, end - first));
-        first = end;
-    }
-    return parts;
-}
-
-/// The outer garments over the inner ones.
-void wear_in_layers(Points& x, const std::vector<Faces>& parts,
-                    const std::vector<int>& first_vertex, const std::string& name) {
-    std::vector<TriMesh> inner;
-    for (size_t part = parts.size(); part-- > 0;) {
-        const int first = first_vertex[part], count = first_vertex[part + 1] - first;
-        TriMesh worn{x.middleRows(first, count), parts[part]};
-        worn.faces.array() -= first;
-        wear_over(worn, inner, name);
-        x.middleRows(first, count) = worn.vertices;
-        inner.push_back(std::move(worn));
-    }
-}
-
 }  // namespace
 
 struct CharacterScene::WornGarments {
     std::vector<Garment> garments;
-    MergedGarments merged;
-    Points worn;
+    Outfit outfit;  ///< as it is worn on the bind pose
     std::vector<std::string> notes;
 };
 
@@ -119,10 +90,14 @@ CharacterScene::WornGarments CharacterScene::read_garments(const CharacterSceneS
         note_wardrobe(file, notes);
     }
     MergedGarments merged = merge_garments(settings.garment, garments);
-    Points all(merged.garment.vertex_count(), 3);
+    const Points& rest = merged.garment.rest().vertices;
+    Garment garment = merged.garment.with_pins(vertices_between(rest, settings.pin));
+    ClothState start = ClothState::at_rest(garment);
     for (size_t k = 0; k < worn.size(); ++k)
-        all.middleRows(merged.first_vertex[k], worn[k].rows()) = worn[k];
-    return {std::move(garments), std::move(merged), std::move(all), std::move(notes)};
+        start.x.middleRows(merged.first_vertex[k], worn[k].rows()) = worn[k];
+    return {std::move(garments),
+            {std::move(garment), std::move(start), std::move(merged.first_vertex)},
+            std::move(notes)};
 }
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings)
@@ -131,29 +106,25 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings)
 
 CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
                                std::shared_ptr<const WeldedCharacter> skin, WornGarments worn)
-    : ComparisonScene(worn.merged.garment.with_pins(
-                          vertices_between(worn.merged.garment.rest().vertices, settings.pin)),
-                      settings.rate),
+    : ComparisonScene(worn.outfit.garment, settings.rate),
       m_skin(std::move(skin)),
-      m_parts(faces_of_parts(garment().rest().faces, worn.merged.first_vertex)),
       m_start(ClothState::at_rest(garment())),
       m_notes(std::move(worn.notes)),
       m_lead_in_frames(static_cast<int>(std::lround(settings.settle * settings.rate))) {
     check_range("--clearance", settings.clearance, 1e-3, 0.05);
     check_range("--settle", settings.settle, 0.0, 60.0);
     for (const Garment& one : worn.garments) distance_to_skin(one, *m_skin);
+    const Outfit& outfit = worn.outfit;
+    for (int part = 0; part < outfit.part_count(); ++part)
+        m_parts.push_back(outfit.faces_of_part(part));
+    if (outfit.has_layers()) m_self_contact.thickness = Outfit::thickness;
     GarmentFitSettings fit;
     fit.clearance = settings.clearance;
     fit.garment_name = settings.garment;
-    const TriMesh worn_mesh{worn.worn, garment().rest().faces};
-    m_start.x = fit_garment(worn_mesh, rest_skin(), m_skin->vertices(0.0), fit);
-    if (m_parts.size() > 1) {
-        wear_in_layers(m_start.x, m_parts, worn.merged.first_vertex, settings.garment);
-        m_self_contact.thickness = Outfit::thickness;
-    }
+    m_start.x = wear_outfit(outfit, rest_skin(), m_skin->vertices(0.0), fit);
     if (garment().has_goals()) {
         // Fitted to the pose that it was modelled on, no goal is inside the skin there.
-        const Points goals = fit_garment(worn_mesh, rest_skin(), rest_skin().vertices, fit);
+        const Points goals = wear_outfit(outfit, rest_skin(), rest_skin().vertices, fit);
         m_skinning = std::make_unique<const GarmentSkinning>(skin_garment(goals, *m_skin));
     }
     m_band = std::make_unique<const SkinBinding>(TriMesh{m_skin->vertices(0.0), *m_skin->faces()},

@@ -28,30 +28,29 @@ SelfContactProjection::SelfContactProjection(const Garment& garment,
     if (settings.untangles()) m_untangling.emplace(garment, settings);
 }
 
-void SelfContactProjection::finish(const Points& x0, Proximity& proximity, const Boundary& boundary,
-                                   double distance, GoalProjection& goals, Points& x,
-                                   SurfaceContacts& contacts, StepReport& report) {
+void SelfContactProjection::finish(const Points& x0, const Untangling::Surroundings& outside,
+                                   Points& x, StepReport& report) {
     if (!m_tools || !x.allFinite()) return;
     m_last = {};
     const bool tangled = m_untangling && !same(x0, m_untangled);
     for (int round = 0; round < goal_rounds; ++round) {
-        part_layers(x0, proximity, boundary, distance, goals.goals(), tangled, x, contacts, report);
+        part_layers(x0, outside, tangled, x, report);
         m_next_untangled.resize(0, 3);
         if (m_last.keeps_untangled && same(x0, m_untangled)) m_next_untangled = x;
-        goals.resolve(proximity, boundary, distance, x, contacts);
-        if (goals.last().max_move < fair_move) break;
+        outside.goals.resolve(outside.proximity, outside.boundary, outside.distance, x,
+                              outside.contacts);
+        if (outside.goals.last().max_move < fair_move) break;
     }
 }
 
 /// Layers and obstacles.
-void SelfContactProjection::part_layers(const Points& x0, Proximity& proximity,
-                                        const Boundary& boundary, double distance,
-                                        const std::vector<VertexGoal>& goals, bool tangled,
-                                        Points& x, SurfaceContacts& contacts, StepReport& report) {
+void SelfContactProjection::part_layers(const Points& x0, const Untangling::Surroundings& outside,
+                                        bool tangled, Points& x, StepReport& report) {
+    const auto& [boundary, proximity, goals, distance, contacts] = outside;
     const bool obstacles = !boundary.obstacles.empty();
     for (int pass = 0; pass < passes; ++pass) {
         const SelfResolveReport resolved = m_tools->resolver.resolve(
-            x0, obstacles ? contacts : m_none, distance, x, tangled, goals);
+            x0, obstacles ? contacts : m_none, distance, x, tangled, goals.goals());
         m_last.crossings += resolved.crossings;
         m_last.rounds += resolved.rounds;
         m_last.rigid = std::max(m_last.rigid, resolved.rigid);

@@ -17,14 +17,12 @@ class SelfContactProjection {
     /// @throws ArgumentError if a setting is out of range
     SelfContactProjection(const Garment& garment, const SelfContactSettings& settings);
 
-    /// @param x0        |V| x 3 (m): positions at t
-    /// @param contacts  nearest points of `x` on the obstacles, chosen at t + dt; kept up to date
-    /// @param distance  of vertices from obstacles (m) that is held
-    /// @param goals     begun for this step; have the last word
-    /// @param x         |V| x 3 (m): positions at t + dt, pins in place
-    /// @param report    max_penetration is brought up to date
-    void finish(const Points& x0, Proximity& proximity, const Boundary& boundary, double distance,
-                GoalProjection& goals, Points& x, SurfaceContacts& contacts, StepReport& report);
+    /// @param x0       |V| x 3 (m): positions at t
+    /// @param outside  its goals have the last word
+    /// @param x        |V| x 3 (m): positions at t + dt, pins in place
+    /// @param report   max_penetration is brought up to date
+    void finish(const Points& x0, const Untangling::Surroundings& outside, Points& x,
+                StepReport& report);
 
     /// Counts them in `report`, at the end of all. Does not look for them where x is what the last
     /// finish() made of positions without any, and nothing passed through anything.
@@ -44,9 +42,8 @@ class SelfContactProjection {
     const SelfResolveReport& last() const { return m_last; }
 
  private:
-    void part_layers(const Points& x0, Proximity& proximity, const Boundary& boundary,
-                     double distance, const std::vector<VertexGoal>& goals, bool tangled, Points& x,
-                     SurfaceContacts& contacts, StepReport& report);
+    void part_layers(const Points& x0, const Untangling::Surroundings& outside, bool tangled,
+                     Points& x, StepReport& report);
     double depth_of_moved(const SurfaceContacts& contacts);
     void keep(const std::vector<Tangle>& tangles, const Points& x);
     void report_tangles(const std::vector<Tangle>& tangles, const Points& x, StepReport& report);

@@ -463,7 +463,7 @@ void StepSolver::project(const Boundary& boundary, const ClothState& state, Step
         m_goals.finish(m_projection, m_proximity, boundary, distance, m_x, m_contacts);
     report.max_penetration = resolved.deepest_after();
     report.max_entry = resolved.max_depth_before;
-    m_self_contact.finish(state.x, m_proximity, boundary, distance, m_goals, m_x, m_contacts,
+    m_self_contact.finish(state.x, {boundary, m_proximity, m_goals, distance, m_contacts}, m_x,
                           report);
     m_self_contact.count_tangles(m_x, report);
     report.vertices_beyond_goals = m_goals.last().beyond;

@@ -176,8 +176,9 @@ void XpbdStepper::move_pins(const Boundary& boundary, const Points& x0, double p
 void XpbdStepper::finish_self_contact(const Boundary& boundary, double dt, const ClothState& state,
                                       StepReport& report) {
     m_v = m_x;
-    m_self_contact.finish(state.x, m_proximity, boundary, safety_distance, m_goal_resolver, m_x,
-                          m_contacts, report);
+    m_self_contact.finish(state.x,
+                          {boundary, m_proximity, m_goal_resolver, safety_distance, m_contacts},
+                          m_x, report);
     for (Eigen::Index i = 0; i < m_x.rows(); ++i)
         if (m_x.row(i) != m_v.row(i)) m_w.row(i).head<3>() = (m_x.row(i) - state.x.row(i)) / dt;
 }

@@ -246,6 +246,19 @@ TEST_F(Bake, MessagesNameTheGarmentsFile) {
     }
 }
 
+TEST_F(Bake, WhatWasModelledFlatIsNotLostWhenItHangs) {
+    const BakeScene scene = make_bake_scene(cape("xpbd-10"));
+    const Boundary boundary = scene.cloth->frame_boundary(-scene.cloth->lead_in_frames());
+    const Points worn = scene.cloth->start().x;
+    Points hanging = worn;
+    const double top = hanging.col(1).maxCoeff();
+    hanging.col(1) = (top - 3.0 * (top - hanging.col(1).array())).matrix();
+    ASSERT_LT(hanging.col(1).mean(), worn.col(1).mean() - 0.3);
+    EXPECT_EQ(scene.cloth->loss(boundary, hanging), "");
+    hanging.col(1).array() -= 0.5;
+    EXPECT_NE(scene.cloth->loss(boundary, hanging), "");
+}
+
 TEST_F(Bake, GoalsThatArePaintedInTheFileHoldTheGarmentNearTheSkin) {
     BakeOptions options = cape("quasi-newton");
     const PaintedMesh painted = painted_cape();
