@@ -45,6 +45,11 @@ std::vector<float> row_of(const Eigen::RowVector3f& v) {
     return {v[0], v[1], v[2]};
 }
 
+/// {value} in braces is a list to GCC and a copy of the value to clang.
+json list_of(const json& value) {
+    return json::array({value});
+}
+
 json accessor(int view, std::uint64_t offset, int type, const char* shape, std::uint64_t count) {
     return {{"bufferView", view},
             {"byteOffset", offset},
@@ -88,8 +93,8 @@ json scene(const std::string& name, const Layout& at, Eigen::Index vertices, Eig
            const std::vector<Extent>& extents, double rate) {
     const auto count = static_cast<int>(extents.size());
     const auto vertex_count = static_cast<std::uint64_t>(vertices);
-    json accessors = {
-        accessor(0, 0, unsigned_ints, "SCALAR", static_cast<std::uint64_t>(faces) * 3)};
+    json accessors =
+        list_of(accessor(0, 0, unsigned_ints, "SCALAR", static_cast<std::uint64_t>(faces) * 3));
     json targets = json::array();
     for (int k = 0; k < count; ++k) {
         const std::uint64_t begin = static_cast<std::uint64_t>(k) * at.frame;
@@ -104,21 +109,22 @@ json scene(const std::string& name, const Layout& at, Eigen::Index vertices, Eig
     json primitive = {
         {"attributes", {{"POSITION", 1}, {"NORMAL", 2}}}, {"indices", 0}, {"material", 0}};
     json mesh = {{"name", name}};
-    json views = {{{"buffer", 0},
-                   {"byteOffset", at.indices},
-                   {"byteLength", at.frames - at.indices},
-                   {"target", index_buffer}},
-                  {{"buffer", 0},
-                   {"byteOffset", at.frames},
-                   {"byteLength", at.times - at.frames},
-                   {"byteStride", 12},
-                   {"target", array_buffer}}};
+    const json indices = {{"buffer", 0},
+                          {"byteOffset", at.indices},
+                          {"byteLength", at.frames - at.indices},
+                          {"target", index_buffer}};
+    const json vectors = {{"buffer", 0},
+                          {"byteOffset", at.frames},
+                          {"byteLength", at.times - at.frames},
+                          {"byteStride", 12},
+                          {"target", array_buffer}};
+    json views = json::array({indices, vectors});
     json file = {{"asset", {{"version", "2.0"}, {"generator", "FastCloth"}}},
                  {"scene", 0},
-                 {"scenes", {{{"nodes", {0}}}}},
-                 {"nodes", {{{"mesh", 0}, {"name", name}}}},
-                 {"materials", {{{"name", name}, {"doubleSided", true}}}},
-                 {"buffers", {{{"byteLength", at.end}}}}};
+                 {"scenes", list_of({{"nodes", json::array({0})}})},
+                 {"nodes", list_of({{"mesh", 0}, {"name", name}})},
+                 {"materials", list_of({{"name", name}, {"doubleSided", true}})},
+                 {"buffers", list_of({{"byteLength", at.end}})}};
     if (count > 1) {
         primitive["targets"] = targets;
         mesh["weights"] = std::vector<float>(static_cast<size_t>(count - 1), 0.0f);
@@ -126,19 +132,19 @@ json scene(const std::string& name, const Layout& at, Eigen::Index vertices, Eig
             {{"buffer", 0}, {"byteOffset", at.times}, {"byteLength", at.end - at.times}});
         const int input = static_cast<int>(accessors.size());
         json times = accessor(2, 0, floats, "SCALAR", static_cast<std::uint64_t>(count));
-        times["min"] = {0.0f};
-        times["max"] = {static_cast<float>((count - 1) / rate)};
+        times["min"] = list_of(0.0f);
+        times["max"] = list_of(static_cast<float>((count - 1) / rate));
         accessors.push_back(times);
         accessors.push_back(
             accessor(2, at.weights - at.times, floats, "SCALAR",
                      static_cast<std::uint64_t>(count) * static_cast<std::uint64_t>(count - 1)));
-        file["animations"] = {
-            {{"name", name},
-             {"samplers", {{{"input", input}, {"output", input + 1}, {"interpolation", "LINEAR"}}}},
-             {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+        const json sampler = {{"input", input}, {"output", input + 1}, {"interpolation", "LINEAR"}};
+        const json channel = {{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}};
+        file["animations"] = list_of(
+            {{"name", name}, {"samplers", list_of(sampler)}, {"channels", list_of(channel)}});
     }
-    mesh["primitives"] = {primitive};
-    file["meshes"] = {mesh};
+    mesh["primitives"] = list_of(primitive);
+    file["meshes"] = list_of(mesh);
     file["accessors"] = accessors;
     file["bufferViews"] = views;
     return file;

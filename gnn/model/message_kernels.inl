@@ -25,17 +25,19 @@ constexpr int lanes = 8, block = 6, columns = 2;
 #else
 constexpr int lanes = 4, block = 4, columns = 2;
 #endif
-typedef float Lanes __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
+typedef float Lanes __attribute__((vector_size(4 * lanes)));
+/// Lanes in memory: clang forgets that arrays of them, as local variables, are aligned so little.
+typedef float LanesInMemory __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
 static_assert(kernel_lanes % lanes == 0, "a row is whole vectors");
 
 constexpr float norm_epsilon = 1e-5f;  // as LibTorch's LayerNorm
 static_assert(tile_rows % lanes == 0 && tile_rows % block == 0, "tiles are whole blocks");
 
-CLOTH_INLINE const Lanes& load(const float* p) {
-    return *reinterpret_cast<const Lanes*>(p);
+CLOTH_INLINE Lanes load(const float* p) {
+    return *reinterpret_cast<const LanesInMemory*>(p);
 }
-CLOTH_INLINE Lanes& at(float* p) {
-    return *reinterpret_cast<Lanes*>(p);
+CLOTH_INLINE LanesInMemory& at(float* p) {
+    return *reinterpret_cast<LanesInMemory*>(p);
 }
 CLOTH_INLINE int smaller(int a, int b) {
     return a < b ? a : b;

@@ -5,7 +5,8 @@
 // Rows are rounded once when they are gathered; each layer writes what the next one reads.
 
 /// Pairs of bfloat16, the even input in the lower half.
-typedef unsigned Pairs __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
+typedef unsigned Pairs __attribute__((vector_size(4 * lanes)));
+typedef unsigned PairsInMemory __attribute__((vector_size(4 * lanes), aligned(4), may_alias));
 typedef unsigned Pair __attribute__((may_alias));
 typedef unsigned short Halves __attribute__((vector_size(2 * lanes), aligned(2), may_alias));
 
@@ -40,7 +41,7 @@ template <int Columns>
 CLOTH_INLINE void store_row(const Lanes (&values)[Columns], Bfloat16* to) {
 #if defined(__AVX512BF16__)
     if (Columns == 2) {
-        *reinterpret_cast<Pairs*>(to) = reinterpret_cast<Pairs>(_mm512_cvtne2ps_pbh(
+        *reinterpret_cast<PairsInMemory*>(to) = reinterpret_cast<Pairs>(_mm512_cvtne2ps_pbh(
             reinterpret_cast<__m512>(values[Columns - 1]), reinterpret_cast<__m512>(values[0])));
         return;
     }
@@ -83,7 +84,7 @@ CLOTH_INLINE void add_input(const RoundedInput& input, int first, int column, in
     for (int i = 0; i < pairs; ++i) {
         Pairs row[Columns];
         for (int j = 0; j < Columns; ++j)
-            row[j] = *reinterpret_cast<const Pairs*>(b + i * ldb + j * lanes);
+            row[j] = *reinterpret_cast<const PairsInMemory*>(b + i * ldb + j * lanes);
         for (int r = 0; r < Block; ++r)
             for (int j = 0; j < Columns; ++j)
                 sum[r][j] = add_products(sum[r][j], a[r * pairs + i], row[j]);
