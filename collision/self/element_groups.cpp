@@ -1,9 +1,8 @@
 #include "collision/self/element_groups.h"
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "collision/geometry/eight_lanes.h"
 
@@ -16,20 +15,38 @@ constexpr float far_away = 1e15f;  // m, of lanes without an element: its square
 
 using Lanes = EightFloats;
 
-Lanes root(const Lanes& squared) {
-    Eigen::Array<float, 8, 1, Eigen::DontAlign> array;
-    std::memcpy(array.data(), &squared, sizeof(squared));
-    array = array.sqrt();
-    return load_eight(array.data());
-}
-
 Lanes magnitude(const Lanes& a) {
     return a < 0.0f ? -a : a;
+}
+
+/// No less than a vector's length, and no more by a twelfth: quicker than a root.
+Lanes length_bound(const Lanes (&a)[3]) {
+    const Lanes x = magnitude(a[0]), y = magnitude(a[1]), z = magnitude(a[2]);
+    return 0.5858f * larger(larger(x, y), z) + 0.4143f * (x + y + z);
 }
 
 Lanes dot(const Lanes (&a)[3], const Lanes (&b)[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+
+/// Where eight things are along each axis (m), and how they move.
+struct Intervals {
+    Lanes from[3], to[3], least[3], most[3];
+
+    /// Those that come within `reach` of a box: a bit for each.
+    template <typename Box>
+    unsigned near(const Box& box, float reach) const {
+        const Lanes zero = {};
+        EightFlags found = {-1, -1, -1, -1, -1, -1, -1, -1};
+        for (int k = 0; k < 3; ++k) {
+            const Lanes down = smaller(least[k] - box.most_motion[k], zero);
+            const Lanes up = larger(most[k] - box.least_motion[k], zero);
+            found &= (from[k] + down <= Lanes{} + (box.high[k] + reach)) &
+                     (to[k] + up >= Lanes{} + (box.low[k] - reach));
+        }
+        return bits(found);
+    }
+};
 
 template <size_t lanes>
 void put(const Vec3& v, size_t lane, float (&to)[3][lanes]) {
@@ -51,17 +68,27 @@ void ElementGroups::make_groups() {
         std::fill(std::begin(rods.middle[0]), std::end(rods.middle[0]), far_away);
         return rods;
     };
+    const auto no_corners = [] {
+        Corners corners = {};
+        corners.vertex.fill(-1);
+        corners.face.fill(-1);
+        std::fill(std::begin(corners.at[0]), std::end(corners.at[0]), far_away);
+        return corners;
+    };
     for (size_t group = 0; group < m_groups.count(); ++group) {
         m_begin.push_back({m_corners.size(), m_rods.size()});
         Discs& discs = m_discs.emplace_back();
         std::fill(std::begin(discs.centre[0]), std::end(discs.centre[0]), far_away);
         discs.face = m_groups.faces(static_cast<int>(group));
-        size_t edges = 0;
+        size_t edges = 0, vertices = 0;
         for (const int face : discs.face) {
             if (face < 0) break;
             for (const int vertex : m_elements.vertices_of(face)) {
                 if (vertex < 0) break;
-                m_corners.push_back({{}, {}, vertex, face});
+                const size_t lane = vertices++ % width;
+                if (lane == 0) m_corners.push_back(no_corners());
+                m_corners.back().vertex[lane] = vertex;
+                m_corners.back().face[lane] = face;
             }
             for (const int edge : m_elements.edges_of(face)) {
                 if (edge < 0) break;
@@ -73,6 +100,7 @@ void ElementGroups::make_groups() {
         }
     }
     m_begin.push_back({m_corners.size(), m_rods.size()});
+    m_boxes.resize(m_groups.count());
 }
 
 void ElementGroups::find(const Points& x, const Points& motion, double reach, int threads) {
@@ -86,32 +114,46 @@ void ElementGroups::update(const Points& x, const Points& motion) {
     const Vec3 origin = x.row(0);
     const double size = (x.rowwise() - x.row(0)).cwiseAbs().maxCoeff();
     m_rounding = static_cast<float>(rounding * size + 1e-12);
-    for (Corner& corner : m_corners)
-        for (int k = 0; k < 3; ++k) {
-            corner.at[k] = static_cast<float>(x(corner.vertex, k) - origin[k]);
-            corner.motion[k] = static_cast<float>(motion(corner.vertex, k));
+    m_box_reach =
+        m_reach + 2.0f * (m_rounding + static_cast<float>(rounding * motion.cwiseAbs().maxCoeff()));
+    for (Corners& corners : m_corners)
+        for (size_t lane = 0; lane < width && corners.vertex[lane] >= 0; ++lane) {
+            const Vec3 at = x.row(corners.vertex[lane]), moved = motion.row(corners.vertex[lane]);
+            put(at - origin, lane, corners.at);
+            put(moved, lane, corners.motion);
         }
-    for (Discs& discs : m_discs) update(x, motion, origin, discs);
+    for (size_t group = 0; group < m_discs.size(); ++group) update(x, motion, origin, group);
     for (Rods& rods : m_rods) update(x, motion, origin, rods);
 }
 
 void ElementGroups::update(const Points& x, const Points& motion, const Vec3& origin,
-                           Discs& discs) const {
+                           size_t group) {
+    Discs& discs = m_discs[group];
+    Eigen::AlignedBox3d places, moves;
     for (size_t lane = 0; lane < width && discs.face[lane] >= 0; ++lane) {
-        const auto corner = m_elements.faces().row(discs.face[lane]);
-        const Vec3 a = x.row(corner[0]), b = x.row(corner[1]), c = x.row(corner[2]);
-        const Vec3 u = motion.row(corner[0]), v = motion.row(corner[1]), w = motion.row(corner[2]);
+        const auto face = m_elements.faces().row(discs.face[lane]);
+        const Vec3 a = x.row(face[0]), b = x.row(face[1]), c = x.row(face[2]);
+        const Vec3 u = motion.row(face[0]), v = motion.row(face[1]), w = motion.row(face[2]);
         const Vec3 centre = (a + b + c) / 3.0, mean = (u + v + w) / 3.0;
         const auto farthest = [](const Vec3& from, const Vec3& p, const Vec3& q, const Vec3& r) {
             return std::sqrt(std::max(
                 {(p - from).squaredNorm(), (q - from).squaredNorm(), (r - from).squaredNorm()}));
         };
+        for (const Vec3& corner : {a, b, c}) places.extend(corner - origin);
+        for (const Vec3& moved : {u, v, w}) moves.extend(moved);
         put(centre - origin, lane, discs.centre);
         put((b - a).cross(c - a).normalized(), lane, discs.normal);
         discs.radius[lane] = static_cast<float>((1.0 + rounding) * farthest(centre, a, b, c));
         put(mean, lane, discs.motion.mean);
         discs.motion.radius[lane] =
             static_cast<float>((1.0 + rounding) * farthest(mean, u, v, w) + rounding * mean.norm());
+    }
+    Box& box = m_boxes[group];
+    for (int k = 0; k < 3; ++k) {
+        box.low[k] = static_cast<float>(places.min()[k]);
+        box.high[k] = static_cast<float>(places.max()[k]);
+        box.least_motion[k] = static_cast<float>(moves.min()[k]);
+        box.most_motion[k] = static_cast<float>(moves.max()[k]);
     }
 }
 
@@ -131,15 +173,46 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
     }
 }
 
+unsigned ElementGroups::compare(const Corners& corners, const Box& box) const {
+    Intervals intervals;
+    for (int k = 0; k < 3; ++k) {
+        intervals.from[k] = intervals.to[k] = load_eight(corners.at[k]);
+        intervals.least[k] = intervals.most[k] = load_eight(corners.motion[k]);
+    }
+    return intervals.near(box, m_box_reach);
+}
+
+unsigned ElementGroups::compare(const Rods& rods, const Box& box) const {
+    Intervals intervals;
+    const Lanes spread = load_eight(rods.motion.radius);
+    for (int k = 0; k < 3; ++k) {
+        const Lanes middle = load_eight(rods.middle[k]), mean = load_eight(rods.motion.mean[k]);
+        const Lanes half = magnitude(load_eight(rods.half[k]));
+        intervals.from[k] = middle - half;
+        intervals.to[k] = middle + half;
+        intervals.least[k] = mean - spread;
+        intervals.most[k] = mean + spread;
+    }
+    return intervals.near(box, m_box_reach);
+}
+
+ElementGroups::Near ElementGroups::near_edges(size_t group, size_t other) const {
+    Near near = {};
+    const size_t begin = m_begin[group].rods, end = m_begin[group + 1].rods;
+    for (size_t r = begin; r < end; ++r) near[r - begin] = compare(m_rods[r], m_boxes[other]);
+    return near;
+}
+
 /// From outside the face, above its plane by less than it is beside the face, nothing faces it.
-unsigned ElementGroups::compare(const Corner& corner, const Discs& discs, Which which) const {
+unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs& discs,
+                                Which which) const {
     Lanes to[3], normal[3], drift[3];
     for (int k = 0; k < 3; ++k) {
-        to[k] = corner.at[k] - load_eight(discs.centre[k]);
+        to[k] = corners.at[k][lane] - load_eight(discs.centre[k]);
         normal[k] = load_eight(discs.normal[k]);
-        drift[k] = corner.motion[k] - load_eight(discs.motion.mean[k]);
+        drift[k] = corners.motion[k][lane] - load_eight(discs.motion.mean[k]);
     }
-    const Lanes approach = root(dot(drift, drift)) + load_eight(discs.motion.radius);
+    const Lanes approach = length_bound(drift) + load_eight(discs.motion.radius);
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach), radius = load_eight(discs.radius);
     const Lanes squared = dot(to, to), limit = radius + far + m_rounding;
     EightFlags found = squared <= limit * limit;
@@ -153,7 +226,7 @@ unsigned ElementGroups::compare(const Corner& corner, const Discs& discs, Which 
 
 /// Near: what the edges extend along the line between their middles is less than these are apart.
 /// Edges face each other where their lines are nearest between the ends of both.
-unsigned ElementGroups::compare(const Rods& a, int lane, const Rods& b, Which which) const {
+unsigned ElementGroups::compare(const Rods& a, size_t lane, const Rods& b, Which which) const {
     Lanes to[3], first[3], second[3], drift[3];
     for (int k = 0; k < 3; ++k) {
         to[k] = load_eight(b.middle[k]) - a.middle[k][lane];
@@ -162,7 +235,7 @@ unsigned ElementGroups::compare(const Rods& a, int lane, const Rods& b, Which wh
         drift[k] = load_eight(b.motion.mean[k]) - a.motion.mean[k][lane];
     }
     const Lanes approach =
-        root(dot(drift, drift)) + (load_eight(b.motion.radius) + a.motion.radius[lane]);
+        length_bound(drift) + (load_eight(b.motion.radius) + a.motion.radius[lane]);
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach);
     const Lanes squared = dot(to, to), ut = dot(first, to), vt = dot(second, to);
     if (which == Which::near) {

@@ -10,9 +10,9 @@
 namespace cloth {
 
 /// Pairs of elements of one mesh that may be near each other while its vertices move along straight
-/// lines. Of groups of faces that come near each other, the elements are compared eight at a time,
-/// by the spheres around them and around their motions: in single precision, with room for what
-/// that rounds off.
+/// lines. Of groups of faces that come near each other, those elements that come near the other
+/// group's box are compared eight at a time, by the spheres around them and around their motions:
+/// in single precision, with room for what that rounds off.
 ///
 ///     ElementGroups groups(garment);
 ///     groups.find(x, motion, reach, threads);
@@ -63,23 +63,32 @@ class ElementGroups {
         Motions motion;
         std::array<int, width> edge, face;  ///< -1: none
     };
-    /// A vertex.
-    struct Corner {
-        float at[3], motion[3];
-        int vertex, face;
+    /// Eight vertices of a group; lanes without one are far from all.
+    struct Corners {
+        float at[3][width], motion[3][width];
+        std::array<int, width> vertex, face;  ///< -1: none
+    };
+    /// Of a group's faces (m).
+    struct Box {
+        float low[3], high[3], least_motion[3], most_motion[3];
     };
     /// First of a group's corners, or rods.
     struct Begin {
-        size_t corner, rods;
+        size_t corners, rods;
     };
+    static constexpr size_t most_packs = FaceGroups::size * 3 / width;  ///< of a group
+    using Near = std::array<unsigned, most_packs>;  ///< a bit for each lane, per pack
 
     void make_groups();
     void update(const Points& x, const Points& motion);
-    void update(const Points& x, const Points& motion, const Vec3& origin, Discs& discs) const;
+    void update(const Points& x, const Points& motion, const Vec3& origin, size_t group);
     void update(const Points& x, const Points& motion, const Vec3& origin, Rods& rods) const;
     // A bit for each lane.
-    unsigned compare(const Corner& corner, const Discs& discs, Which which) const;
-    unsigned compare(const Rods& a, int lane, const Rods& b, Which which) const;
+    unsigned compare(const Corners& corners, const Box& box) const;
+    unsigned compare(const Rods& rods, const Box& box) const;
+    unsigned compare(const Corners& corners, size_t lane, const Discs& discs, Which which) const;
+    unsigned compare(const Rods& a, size_t lane, const Rods& b, Which which) const;
+    Near near_edges(size_t group, size_t other) const;  ///< those that come near the other's box
     template <typename Visit>
     void visit_corners(size_t a, size_t b, Which which, const Visit& visit) const;
     template <typename Visit>
@@ -89,10 +98,12 @@ class ElementGroups {
     FaceGroups m_groups;
     std::vector<Begin> m_begin;  ///< groups + 1
     std::vector<Discs> m_discs;  ///< of each group
+    std::vector<Box> m_boxes;
     std::vector<Rods> m_rods;
-    std::vector<Corner> m_corners;
-    float m_reach = 0.0f;     ///< (m)
-    float m_rounding = 0.0f;  ///< of a difference of coordinates (m)
+    std::vector<Corners> m_corners;
+    float m_reach = 0.0f;      ///< (m)
+    float m_rounding = 0.0f;   ///< of a difference of coordinates (m)
+    float m_box_reach = 0.0f;  ///< m_reach, with room for what is rounded off (m)
 };
 
 template <typename Visit>
@@ -107,13 +118,15 @@ void ElementGroups::visit(int k, Which which, const Visit& visit) const {
 template <typename Visit>
 void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& visit) const {
     const Discs& discs = m_discs[b];
-    for (size_t c = m_begin[a].corner; c < m_begin[a + 1].corner; ++c) {
-        const Corner& corner = m_corners[c];
-        for_each_lane(compare(corner, discs, which), [&](size_t lane) {
-            const int v = corner.vertex, g = discs.face[lane];
-            const auto at = m_elements.faces().row(g);
-            if (v != at[0] && v != at[1] && v != at[2])
-                visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corner.face, g);
+    for (size_t c = m_begin[a].corners; c < m_begin[a + 1].corners; ++c) {
+        const Corners& corners = m_corners[c];
+        for_each_lane(compare(corners, m_boxes[b]), [&](size_t i) {
+            for_each_lane(compare(corners, i, discs, which), [&](size_t lane) {
+                const int v = corners.vertex[i], g = discs.face[lane];
+                const auto at = m_elements.faces().row(g);
+                if (v != at[0] && v != at[1] && v != at[2])
+                    visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corners.face[i], g);
+            });
         });
     }
 }
@@ -121,13 +134,16 @@ void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& 
 template <typename Visit>
 void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& visit) const {
     const auto& edges = m_elements.edges();
+    const size_t begin = m_begin[b].rods;
+    const Near of_a = near_edges(a, b), of_b = near_edges(b, a);
     for (size_t r = m_begin[a].rods; r < m_begin[a + 1].rods; ++r)
-        for (size_t i = 0; i < width && m_rods[r].edge[i] >= 0; ++i) {
+        for_each_lane(of_a[r - m_begin[a].rods], [&](size_t i) {
             const int first = m_rods[r].edge[i];
             const auto [a0, a1] = edges[static_cast<size_t>(first)];
-            for (size_t s = a == b ? r : m_begin[b].rods; s < m_begin[b + 1].rods; ++s) {
-                unsigned lanes = compare(m_rods[r], static_cast<int>(i), m_rods[s], which);
+            for (size_t s = a == b ? r : begin; s < m_begin[b + 1].rods; ++s) {
+                unsigned lanes = of_b[s - begin];
                 if (r == s) lanes &= ~1u << i;  // each pair once
+                if (lanes != 0) lanes &= compare(m_rods[r], i, m_rods[s], which);
                 for_each_lane(lanes, [&, a0 = a0, a1 = a1](size_t lane) {
                     const int second = m_rods[s].edge[lane];
                     const auto [b0, b1] = edges[static_cast<size_t>(second)];
@@ -136,7 +152,7 @@ void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& vi
                               m_rods[r].face[i], m_rods[s].face[lane]);
                 });
             }
-        }
+        });
 }
 
 }  // namespace cloth

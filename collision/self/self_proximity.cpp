@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <utility>
 
 #include "collision/geometry/gather_in_order.h"
@@ -25,6 +24,14 @@ Vec3 combine(const ElementPair& elements, const std::array<double, 4>& weight, c
     return sum;
 }
 
+double longest_edge(const Garment& garment) {
+    const Points& rest = garment.rest().vertices;
+    double squared = 0.0;
+    for (const auto& [a, b] : garment.edges())
+        squared = std::max(squared, (rest.row(a) - rest.row(b)).squaredNorm());
+    return std::sqrt(squared);
+}
+
 }  // namespace
 
 SelfProximity::SelfProximity(const Garment& garment, double thickness, FaceParts parts)
@@ -33,13 +40,16 @@ SelfProximity::SelfProximity(const Garment& garment, double thickness, FaceParts
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
       m_parts_of_faces(std::move(parts)),
-      m_thickness(thickness) {
+      m_thickness(thickness),
+      m_rest_reach(thickness + 2.0 * longest_edge(garment)) {
 }
 
 bool SelfProximity::near_at_rest(const ElementPair& elements) const {
     if (m_piece[static_cast<size_t>(elements.vertex[0])] !=
         m_piece[static_cast<size_t>(elements.vertex[3])])
         return false;
+    const auto between = m_rest.row(elements.vertex[0]) - m_rest.row(elements.vertex[3]);
+    if (between.squaredNorm() > m_rest_reach * m_rest_reach) return false;
     return closest_points(elements.edges, corners_of(elements, m_rest)).squared <
            m_thickness * m_thickness;
 }
@@ -69,12 +79,20 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
     };
     gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_pairs, find,
                          ElementGroups::pairs_at_once);
-    // Whoever goes through the pairs one after the other should not depend on how faces are
-    // grouped.
-    std::sort(m_pairs.begin(), m_pairs.end(), [](const SelfPair& a, const SelfPair& b) {
-        return std::tie(a.elements.edges, a.elements.element) <
-               std::tie(b.elements.edges, b.elements.element);
-    });
+    sort_pairs();
+}
+
+/// Whoever goes through the pairs one after the other should not depend on how faces are grouped.
+void SelfProximity::sort_pairs() {
+    m_order.clear();
+    for (const SelfPair& pair : m_pairs) {
+        const auto [first, second] = pair.elements.element;
+        m_order.push_back({pair.elements.edges, first, second, static_cast<int>(m_order.size())});
+    }
+    std::sort(m_order.begin(), m_order.end());
+    m_sorted.clear();
+    for (const auto& place : m_order) m_sorted.push_back(m_pairs[static_cast<size_t>(place[3])]);
+    m_pairs.swap(m_sorted);
 }
 
 }  // namespace cloth

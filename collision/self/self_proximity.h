@@ -56,6 +56,7 @@ class SelfProximity {
     bool is_near(const ElementPair& elements, const Points& x, const Points& motion, double reach,
                  SelfPair& pair) const;
     bool near_at_rest(const ElementPair& elements) const;
+    void sort_pairs();
 
     ElementGroups m_groups;
     OffsetRegions m_regions;
@@ -63,7 +64,9 @@ class SelfProximity {
     std::vector<int> m_piece;  ///< |V|: connected piece
     FaceParts m_parts_of_faces;
     double m_thickness;
-    std::vector<SelfPair> m_pairs;
+    double m_rest_reach;  ///< vertices farther apart are of elements that are not near at rest (m)
+    std::vector<SelfPair> m_pairs, m_sorted;
+    std::vector<std::array<int, 4>> m_order;  ///< edges or not, the elements, index of the pair
     std::vector<std::vector<SelfPair>> m_parts;
 };
 
