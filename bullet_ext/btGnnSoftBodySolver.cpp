@@ -97,7 +97,9 @@ void checkGoals(const btSoftBody& body, const cloth::SkinGoals& goals, double du
                             "check the animation before handing it over");
 }
 
-/// What cloth and bodies did to each other that a user should know of.
+constexpr btScalar kMostGravity = 100;  // m/s^2: four times Jupiter's
+
+/// What cloth and bodies did to each other, or the scene to the cloth, that a user should know of.
 std::vector<std::string> troublesOf(const btSoftBody& body,
                                     const cloth::SoftBodyStep::Result& result) {
     std::vector<std::string> troubles;
@@ -126,6 +128,11 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
                            ": appendDeformableAnchor() to a rigid body does nothing outside of "
                            "Bullet's deformable "
                            "world. Remedy: appendAnchor(), or a link of a btMultiBody");
+    const btScalar gravity = body.m_worldInfo->m_gravity.length();
+    if (gravity > kMostGravity)
+        troubles.push_back(name + ": gravity is " + std::to_string(std::lround(gravity)) +
+                           " m/s^2, as where lengths are in centimetres; distances of contact are "
+                           "in metres. Remedy: lengths and gravity in metres");
     return troubles;
 }
 

@@ -75,6 +75,13 @@ TEST_F(BadInput, UnconnectedPiecesAreCloth) {
     EXPECT_LT(node(*body, first).y(), -0.8);
 }
 
+TEST_F(BadInput, AWorldInCentimetresIsTold) {
+    world.info().m_gravity = {0, -981, 0};
+    healthy->setUserIndex(7);
+    world.step(1.0 / 60.0, 2);
+    expect_told("gravity is 981 m/s^2", "centimetres");
+}
+
 TEST_F(BadInput, AnEdgeOfThreeFacesIsTold) {
     btSoftBody* body = patch(world.info(), {0, 0, 0});
     body->appendNode({0, 0.3f, 0}, 1);
