@@ -5,6 +5,8 @@
 #include <atomic>
 #include <cerrno>
 
+#include "tests/address_sanitizer.h"
+
 namespace {
 
 std::atomic<long long> held{0}, highest{0};
@@ -18,7 +20,7 @@ void add(long long bytes) {
 
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__)
+#if CLOTH_ADDRESS_SANITIZER
 
 // The sanitizer owns malloc, and tells what it does.
 extern "C" {

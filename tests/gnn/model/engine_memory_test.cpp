@@ -7,9 +7,10 @@
 
 #include "data/authoring/sheet.h"
 #include "gnn/model/engine.h"
+#include "tests/address_sanitizer.h"
 #include "tests/gnn/model/random_weights.h"
 
-#if defined(__SANITIZE_ADDRESS__)
+#if CLOTH_ADDRESS_SANITIZER
 #define CLOTH_COUNTS_ALLOCATIONS 0
 #else
 #define CLOTH_COUNTS_ALLOCATIONS 1
