@@ -45,8 +45,9 @@ DataSet real_time(const std::string& garment) {
             figures + name + ".json",
             "build/release/demos/speed_error --garment " + garment +
                 " --rate 60 --frames 60 --relative-to xpbd-20 --solvers"
-                " bullet-fine,xpbd-20,quasi-newton-3,quasi-newton-10,quasi-newton,quasi-newton@16,"
-                "quasi-newton@8,quasi-newton-50x4,quasi-newton-50x16 --out OUT",
+                " bullet-fine,xpbd-20,default,default@16,default@8,quasi-newton-3,quasi-newton-10,"
+                "quasi-newton,quasi-newton@16,quasi-newton@8,quasi-newton-50x4,quasi-newton-50x16 "
+                "--out OUT",
             "speed_error.json",
             {},
             {}};
@@ -117,7 +118,8 @@ std::vector<DataSet> data_sets() {
          figures + "max_ms.json",
          "build/release/demos/speed_error --garment tshirt --frames 60 --relative-to "
          "quasi-newton-10"
-         " --solvers quasi-newton-10,quasi-newton,quasi-newton@40,quasi-newton@20,"
+         " --solvers default,default@40,default@20,quasi-newton-10,quasi-newton,quasi-newton@40,"
+         "quasi-newton@20,"
          "small+3,small,small@40,small@20 --out OUT",
          "speed_error.json",
          {},

@@ -78,6 +78,8 @@ SolverFamily solver_family(std::string solver) {
     if (const auto setting = after(solver, "bullet-")) return bullet_family(*setting);
     if (const auto setting = after(solver, "xpbd-"))
         return {Kind::xpbd, "XPBD", *setting, "sub-steps"};
+    if (solver == "default")
+        return {Kind::quasi_newton, "quasi-Newton, small steps", "shipped", "iterations, steps"};
     if (solver == "quasi-newton")
         return {Kind::quasi_newton, "quasi-Newton", "shipped", "iterations"};
     if (const auto setting = after(solver, "quasi-newton-"); setting && setting->find('s') < npos)

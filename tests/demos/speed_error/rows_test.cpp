@@ -81,6 +81,9 @@ TEST(SolverFamily, NamesSayFamilyAndSetting) {
     EXPECT_EQ(solver_family("bullet-5x8").name, "Bullet, 8 sub-steps");
     EXPECT_EQ(solver_family("quasi-newton-bdf2@8").name, "quasi-Newton, BDF2, limit of time");
     EXPECT_EQ(solver_family("quasi-newton@8").setting, "shipped@8");
+    EXPECT_EQ(solver_family("default").name, solver_family("quasi-newton-3s120").name);
+    EXPECT_EQ(solver_family("default@8").setting, "shipped@8");
+    EXPECT_FALSE(network_facts("default@8", {}));
     EXPECT_EQ(solver_family("quasi-newton-5-bdf2~1000").name, "quasi-Newton, BDF2, proxy 1000");
     EXPECT_EQ(solver_family("small+3~tshirt_1000@20").setting, "+3@20");
     EXPECT_EQ(solver_family("bullet-5x1").setting, "5");
