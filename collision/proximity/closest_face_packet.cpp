@@ -256,7 +256,7 @@ void ClosestFaceTree::closest(const Query* queries, int count, Stack& stack, Fac
         for (unsigned left = together.children_in_reach(node, squared); left != 0;
              left &= left - 1) {
             const int slot = __builtin_ctz(left);
-            if (!together.any_within(node, slot)) continue;
+            if (node.child[slot] == 0 || !together.any_within(node, slot)) continue;  // 0: none
             if (node.child[slot] < 0)
                 together.try_face(~node.child[slot]);
             else
