@@ -164,15 +164,12 @@ struct ClosestFaceTree::Packet {
         reach = radius * radius * 1.0001f + std::numeric_limits<float>::min();
     }
 
-    /// Bit k: the box of child k is within reach, with limbs that not all ignore.
+    /// Bit k: the box of child k is within reach, with limbs that not all ignore. A slot without a
+    /// child has none: for points so far away that they are infinite here, its box is no test.
     unsigned children_in_reach(const Node& node, EightFloats& squared) const {
         squared = box_distances(node.low, node.high, local_centre);
-        unsigned found = bits(squared <= reach);
-        for (unsigned left = tree.m_limbs.empty() ? 0 : found; left != 0; left &= left - 1) {
-            const int slot = __builtin_ctz(left);
-            if ((node.limbs[slot] & ~ignored_by_all) == 0) found &= ~(1u << slot);
-        }
-        return found;
+        const EightSets limbs = load_eight<EightSets>(node.limbs) & ~ignored_by_all;
+        return bits((squared <= reach) & (limbs != 0));
     }
 
     /// Whether the box of a child is within the bound of any point.
@@ -256,7 +253,7 @@ void ClosestFaceTree::closest(const Query* queries, int count, Stack& stack, Fac
         for (unsigned left = together.children_in_reach(node, squared); left != 0;
              left &= left - 1) {
             const int slot = __builtin_ctz(left);
-            if (node.child[slot] == 0 || !together.any_within(node, slot)) continue;  // 0: none
+            if (!together.any_within(node, slot)) continue;
             if (node.child[slot] < 0)
                 together.try_face(~node.child[slot]);
             else

@@ -57,8 +57,7 @@ StepperCase substepped(int substeps) {
     return result;
 }
 
-StepperCase small_steps(const std::string& name, const StepSettings& step, double tolerance,
-                        int steps = 4) {
+StepperCase small_steps(const std::string& name, const StepSettings& step, double tolerance) {
     const auto make = [step](const Garment& garment) {
         ClothStepperSettings settings;
         settings.step = step;
@@ -67,21 +66,20 @@ StepperCase small_steps(const std::string& name, const StepSettings& step, doubl
     StepperCase result{name, make, tolerance, {}};
     result.exceptions = {{Promise::free_fall,
                           "it falls in small steps, by another closed form (tested on its own)"}};
-    result.steps = steps;
     return result;
 }
 
 // Conjugate gradients that end early amplify rounding where contact is stiff, tenfold from one
-// iteration to the next, so of Newton in small steps two steps are compared.
-INSTANTIATE_TEST_SUITE_P(
-    Physics, StepperContract,
-    ::testing::Values(reference(), quasi_newton(1), quasi_newton(5), quasi_newton(20), bdf2(),
-                      substepped(4),
-                      small_steps("SmallSteps", StepSettings::in_small_steps(), 1e-6),
-                      small_steps("NewtonInSmallSteps", StepSettings::newton_in_small_steps(), 1e-4,
-                                  2),
-                      xpbd(1), xpbd(20), xpbd(100)),
-    case_name);
+// iteration to the next; twenty Newton steps converge all the same.
+INSTANTIATE_TEST_SUITE_P(Physics, StepperContract,
+                         ::testing::Values(reference(), quasi_newton(1), quasi_newton(5),
+                                           quasi_newton(20), bdf2(), substepped(4),
+                                           small_steps("SmallSteps", StepSettings::in_small_steps(),
+                                                       1e-6),
+                                           small_steps("NewtonInSmallSteps",
+                                                       StepSettings::newton_in_small_steps(), 5e-4),
+                                           xpbd(1), xpbd(20), xpbd(100)),
+                         case_name);
 
 }  // namespace
 }  // namespace cloth::test

@@ -106,6 +106,24 @@ TEST(ClosestFacePacket, FacesThatAreNotFiniteAndEmptyMeshesAreNoCandidates) {
     }
 }
 
+/// There they are infinite, and boxes that are so far away as to be none hold nothing off.
+TEST(ClosestFacePacket, PointsTooFarAwayForSinglePrecisionFindNothing) {
+    std::mt19937 random(15);
+    const TriMesh few{icosphere(0).vertices, icosphere(0).faces.topRows(3)};
+    const ClosestFaceTree tree(few.vertices, few.faces, 3.0);
+    for (const double far : {1e20, 1e39, 1e300})
+        for (int trial = 0; trial < 50; ++trial) {
+            std::vector<Query> queries(ClosestFaceTree::packet);
+            for (Query& query : queries) {
+                query.x = far * random_point(random, 1.0);
+                if (trial % 2 == 0) query.x = -query.x.cwiseAbs();
+                query.radius = 0.1;
+            }
+            if (trial % 3 == 0) queries[0].x.setZero();
+            expect_same_as_single(tree, queries);
+        }
+}
+
 TEST(SpatialOrder, RunsAreGroupsOfNeighbours) {
     std::mt19937 random(14);
     constexpr int run = 8;
