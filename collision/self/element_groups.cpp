@@ -61,19 +61,18 @@ ElementGroups::ElementGroups(const Garment& garment)
 }
 
 void ElementGroups::make_groups() {
-    const auto no_rods = [] {
-        Rods rods = {};
-        rods.edge.fill(-1);
-        rods.face.fill(-1);
-        std::fill(std::begin(rods.middle[0]), std::end(rods.middle[0]), far_away);
-        return rods;
+    const auto leave_empty = [](auto& element, auto& face, auto& place) {
+        element.fill(-1);
+        face.fill(-1);
+        std::fill(std::begin(place[0]), std::end(place[0]), far_away);
     };
-    const auto no_corners = [] {
-        Corners corners = {};
-        corners.vertex.fill(-1);
-        corners.face.fill(-1);
-        std::fill(std::begin(corners.at[0]), std::end(corners.at[0]), far_away);
-        return corners;
+    const auto add_corners = [&] {
+        Corners& corners = m_corners.emplace_back();
+        leave_empty(corners.vertex, corners.face, corners.at);
+    };
+    const auto add_rods = [&] {
+        Rods& rods = m_rods.emplace_back();
+        leave_empty(rods.edge, rods.face, rods.middle);
     };
     for (size_t group = 0; group < m_groups.count(); ++group) {
         m_begin.push_back({m_corners.size(), m_rods.size()});
@@ -86,14 +85,14 @@ void ElementGroups::make_groups() {
             for (const int vertex : m_elements.vertices_of(face)) {
                 if (vertex < 0) break;
                 const size_t lane = vertices++ % width;
-                if (lane == 0) m_corners.push_back(no_corners());
+                if (lane == 0) add_corners();
                 m_corners.back().vertex[lane] = vertex;
                 m_corners.back().face[lane] = face;
             }
             for (const int edge : m_elements.edges_of(face)) {
                 if (edge < 0) break;
                 const size_t lane = edges++ % width;
-                if (lane == 0) m_rods.push_back(no_rods());
+                if (lane == 0) add_rods();
                 m_rods.back().edge[lane] = edge;
                 m_rods.back().face[lane] = face;
             }
