@@ -95,7 +95,8 @@ install(FILES ${PROJECT_BINARY_DIR}/fastcloth.pc DESTINATION ${CMAKE_INSTALL_LIB
 install(FILES ${PROJECT_SOURCE_DIR}/gnn/deadline.h ${PROJECT_SOURCE_DIR}/gnn/stepper.h DESTINATION ${FASTCLOTH_INCLUDE_DIR}/gnn)
 foreach(folder ${FASTCLOTH_HEADERS})
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/ DESTINATION ${FASTCLOTH_INCLUDE_DIR}/${folder}
-          FILES_MATCHING PATTERN "*.h" PATTERN cmake EXCLUDE)
+          FILES_MATCHING PATTERN "*.h" PATTERN cmake EXCLUDE
+          PATTERN json_integers.h EXCLUDE)  # for .cpp files: shows a type of nlohmann's
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/assets/ DESTINATION ${FASTCLOTH_ASSETS_DIR}
         PATTERN figures EXCLUDE)

@@ -8,6 +8,7 @@
 #include "data/core/errors.h"
 #include "data/core/printable.h"
 #include "data/core/read_file.h"
+#include "data/files/json_integers.h"
 
 namespace cloth {
 
@@ -35,8 +36,8 @@ class RecipeReader {
     }
 
     RigPoint point(const std::string& name, const json& entry, int vertex_count) const {
-        RigPoint point{name, entry.at("vertices").get<std::vector<int>>(),
-                       entry.at("weights").get<std::vector<double>>()};
+        RigPoint point{name, {}, entry.at("weights").get<std::vector<double>>()};
+        read_integer(entry.at("vertices"), "vertices", point.vertices);
         const double sum = std::accumulate(point.weights.begin(), point.weights.end(), 0.0);
         if (point.vertices.empty() || point.vertices.size() != point.weights.size())
             fail("point " + name, "needs one weight per vertex");
@@ -51,7 +52,7 @@ class RecipeReader {
         RigRecipe recipe;
         recipe.model = root.at("mesh").at("file");
         recipe.mesh_name = root.at("mesh").at("name");
-        recipe.vertex_count = root.at("mesh").at("vertices");
+        read_integer(root.at("mesh").at("vertices"), "mesh.vertices", recipe.vertex_count);
         Index points, joints;
         for (const auto& [name, entry] : root.at("points").items()) {
             points[name] = static_cast<int>(recipe.points.size());
@@ -95,6 +96,8 @@ RigRecipe load_rig_recipe(const std::string& path) {
     try {
         return RecipeReader(path).recipe(json::parse(text));
     } catch (const json::exception& error) {
+        throw LoadError(path, "", error.what(), remedy);
+    } catch (const ArgumentError& error) {
         throw LoadError(path, "", error.what(), remedy);
     }
 }

@@ -6,6 +6,7 @@
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
+#include "data/files/json_integers.h"
 
 namespace cloth {
 
@@ -90,19 +91,20 @@ ModelConfig ModelConfig::from_json(const std::string& text, const std::string& f
     try {
         const json j = json::parse(text);
         j.at("variant").get_to(c.variant);
-        j.at("steps").get_to(c.steps);
-        j.at("width").get_to(c.width);
-        j.at("hidden_layers").get_to(c.hidden_layers);
-        j.at("sampled_edges").get_to(c.sampled_edges);
+        read_integer(j.at("steps"), "steps", c.steps);
+        read_integer(j.at("width"), "width", c.width);
+        read_integer(j.at("hidden_layers"), "hidden_layers", c.hidden_layers);
+        read_integer(j.at("sampled_edges"), "sampled_edges", c.sampled_edges);
         j.at("world_every_step").get_to(c.world_every_step);
         j.at("body_updates").get_to(c.body_updates);
         j.at("message_scale").get_to(c.message_scale);
-        j.at("schedule_seed").get_to(c.schedule_seed);
+        read_integer(j.at("schedule_seed"), "schedule_seed", c.schedule_seed);
         j.at("dt").get_to(c.dt);
         j.at("force_features").get_to(c.features.force_features);
         j.at("world_radius").get_to(c.features.world_radius);
         c.pooling = pooling_named(j.value("pooling", "none"));
-        if (c.pooling != Pooling::none) j.at("level_schedule").get_to(c.level_schedule);
+        if (c.pooling != Pooling::none)
+            read_integer(j.at("level_schedule"), "level_schedule", c.level_schedule);
         c.check();
     } catch (const json::exception& error) {
         throw LoadError(file, "configuration", error.what(), "export the network again");

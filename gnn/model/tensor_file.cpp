@@ -10,6 +10,7 @@
 #include "data/core/errors.h"
 #include "data/core/printable.h"
 #include "data/core/read_file.h"
+#include "data/files/json_integers.h"
 
 namespace cloth {
 
@@ -59,10 +60,12 @@ WeightTensor read_tensor(const RawFile& raw, const json& entry, const std::strin
     try {
         if (entry.at("dtype") != "F32")
             throw LoadError(file, place, "is not of type F32", "store float32 numbers");
-        entry.at("shape").get_to(tensor.shape);
-        entry.at("data_offsets").at(0).get_to(begin);
-        entry.at("data_offsets").at(1).get_to(end);
+        read_integer(entry.at("shape"), "shape", tensor.shape);
+        read_integer(entry.at("data_offsets").at(0), "data_offsets", begin);
+        read_integer(entry.at("data_offsets").at(1), "data_offsets", end);
     } catch (const json::exception& error) {
+        throw LoadError(file, place, error.what(), export_again);
+    } catch (const ArgumentError& error) {
         throw LoadError(file, place, error.what(), export_again);
     }
     for (int size : tensor.shape)

@@ -4,6 +4,7 @@
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
+#include "data/files/json_integers.h"
 
 namespace cloth {
 
@@ -40,10 +41,10 @@ SkinningConfig SkinningConfig::from_json(const std::string& text, const std::str
     try {
         const json fields = json::parse(text);
         fields.at("garment").get_to(config.garment);
-        fields.at("vertices").get_to(config.vertices);
+        read_integer(fields.at("vertices"), "vertices", config.vertices);
         fields.at("joints").get_to(config.joints);
-        fields.at("ages").get_to(config.ages);
-        fields.at("layers").get_to(config.layers);
+        read_integer(fields.at("ages"), "ages", config.ages);
+        read_integer(fields.at("layers"), "layers", config.layers);
         fields.at("scale").get_to(config.scale);
         fields.at("dt").get_to(config.dt);
         config.check();

@@ -204,6 +204,22 @@ TEST(ModelConfig, RefusesLevelsThatCannotBe) {
     refuses("\"level_schedule\"", "\"level_schedul\"");
 }
 
+TEST(ModelConfig, IntegersAreNotMadeOfOtherNumbers) {
+    const std::string text = ModelConfig::variant_named("sampling", 5).to_json();
+    for (const char* number : {"-1e308", "1e20", "5.5", "4294967301", "-4294967291",
+                               "18446744073709551621", "true", "\"5\"", "[5]"})
+        for (const std::string field : {"\"steps\":", "\"schedule_seed\":"}) {
+            const size_t at = text.find(field) + field.size();
+            std::string changed = text;
+            changed.replace(at, text.find(',', at) - at, number);
+            if (field == "\"schedule_seed\":" && std::string(number) == "4294967301") {
+                EXPECT_EQ(ModelConfig::from_json(changed, "here").schedule_seed, 4294967301u);
+                continue;
+            }
+            EXPECT_THROW(ModelConfig::from_json(changed, "here"), LoadError) << changed;
+        }
+}
+
 TEST(ModelConfig, SurvivesItsText) {
     ModelConfig config = ModelConfig::variant_named("sampling");
     config.width = 48;
