@@ -1,13 +1,14 @@
 #include "tests/fuzz/file_fuzzing.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "data/core/errors.h"
 #include "tests/fuzz/file_mutations.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t memory_of_a_library = size_t{24} << 20;  // bytes: assimp's buffer takes 16 MiB
 constexpr size_t memory_per_byte = 100;  // a JSON value takes 40 bytes for two characters
-constexpr rlim_t longest_load = 20;      // s of processor time, under sanitizers too
+constexpr time_t longest_load = 20;      // s of processor time, under sanitizers too
 
 /// A folder of its own for each test, gone afterwards.
 class Folder {
@@ -56,56 +57,106 @@ std::string read_and_judge(const FileFormat& format, const std::string& path, si
     return meter.peak() <= most ? "" : "it took " + std::to_string(meter.peak()) + " bytes";
 }
 
-std::string text_of(int pipe) {
-    std::string text;
-    char buffer[4096];
-    for (ssize_t n; (n = ::read(pipe, buffer, sizeof buffer)) > 0;)
-        text.append(buffer, static_cast<size_t>(n));
-    ::close(pipe);
-    return text;
+bool read_all(int pipe, void* to, size_t size) {
+    for (size_t done = 0; done < size;) {
+        const ssize_t n = ::read(pipe, static_cast<char*>(to) + done, size - done);
+        if (n <= 0) return false;
+        done += static_cast<size_t>(n);
+    }
+    return true;
 }
 
-/// As read_and_judge(), in a process of its own: a crash or a file that is never done is a finding
-/// like others and does not hide them.
-std::string outcome(const FileFormat& format, const std::string& path, size_t size) {
-    int ends[2];
-    if (::pipe(ends) != 0) return "no pipe";
-    const pid_t child = ::fork();
-    if (child == 0) {
-        const rlimit limit{longest_load, longest_load};
-        ::setrlimit(RLIMIT_CPU, &limit);
-        const std::string problem = read_and_judge(format, path, size);
-        const bool written = ::write(ends[1], problem.data(), problem.size()) >= 0;
-        ::_exit(written ? 0 : 1);
+void write_all(int pipe, const void* from, size_t size) {
+    for (size_t done = 0; done < size;) {
+        const ssize_t n = ::write(pipe, static_cast<const char*>(from) + done, size - done);
+        if (n <= 0) ::_exit(1);
+        done += static_cast<size_t>(n);
     }
-    ::close(ends[1]);
-    const std::string problem = text_of(ends[0]);
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return problem;
+}
+
+using Judge = std::function<std::string(size_t)>;
+
+/// Judges `first` to `count` - 1 and ends the process.
+[[noreturn]] void judge_and_exit(size_t first, size_t count, const Judge& judge, int pipe) {
+    for (size_t k = first; k < count; ++k) {
+        const itimerval limit{{0, 0}, {longest_load, 0}};
+        ::setitimer(ITIMER_PROF, &limit, nullptr);
+        const std::string problem = judge(k);
+        const size_t size = problem.size();
+        write_all(pipe, &size, sizeof size);
+        write_all(pipe, problem.data(), size);
+    }
+    ::_exit(0);
+}
+
+std::string how_it_ended(int status) {
     if (WIFEXITED(status)) return "it ended with a report of a sanitizer";
     return std::string("it crashed or took too long: ") + ::strsignal(WTERMSIG(status));
 }
 
-void check_content(const FileFormat& format, const Folder& folder, const std::string& content) {
+/// What `judge` says of 0 to `count` - 1 in another process: a crash or a file that is never done
+/// is a finding like others, and a new process goes on behind it.
+void judge_apart(size_t count, const Judge& judge,
+                 const std::function<void(size_t, const std::string& problem)>& found) {
+    for (size_t k = 0; k < count;) {
+        int ends[2];
+        if (::pipe(ends) != 0) throw std::runtime_error("no pipe");
+        const pid_t child = ::fork();
+        if (child == 0) judge_and_exit(k, count, judge, ends[1]);
+        ::close(ends[1]);
+        for (size_t size = 0; read_all(ends[0], &size, sizeof size);) {
+            std::string problem(size, ' ');
+            if (!read_all(ends[0], problem.data(), size)) break;
+            found(k++, problem);
+        }
+        ::close(ends[0]);
+        int status = 0;
+        ::waitpid(child, &status, 0);
+        if (k < count) found(k++, how_it_ended(status));
+    }
+}
+
+struct Content {
+    std::string bytes, trace;
+};
+
+void check_contents(const FileFormat& format, const Folder& folder, size_t count,
+                    const std::function<Content(size_t)>& content) {
     const std::string path = folder.file("file." + format.extension);
-    std::ofstream(path, std::ios::binary) << content;
-    const std::string problem = outcome(format, path, content.size());
-    if (problem.empty()) return;
-    const fs::path kept = folder.path().string() + "_failed." + format.extension;
-    fs::copy_file(path, kept, fs::copy_options::overwrite_existing);
-    ADD_FAILURE() << problem << "\nthe file is kept as " << kept;
+    const auto judge = [&](size_t k) {
+        const std::string bytes = content(k).bytes;
+        std::ofstream(path, std::ios::binary) << bytes;
+        return read_and_judge(format, path, bytes.size());
+    };
+    judge_apart(count, judge, [&](size_t k, const std::string& problem) {
+        if (problem.empty()) return;
+        const Content bad = content(k);
+        SCOPED_TRACE(bad.trace);
+        const std::string kept = folder.path().string() + "_failed." + format.extension;
+        std::ofstream(kept, std::ios::binary) << bad.bytes;
+        ADD_FAILURE() << problem << "\nthe file is kept as " << kept;
+    });
+}
+
+void check_content(const FileFormat& format, const Folder& folder, const std::string& bytes) {
+    check_contents(format, folder, 1, [&](size_t) { return Content{bytes, ""}; });
+}
+
+void check_path(const FileFormat& format, const std::string& path) {
+    judge_apart(
+        1, [&](size_t) { return read_and_judge(format, path, 0); },
+        [](size_t, const std::string& problem) { EXPECT_EQ(problem, ""); });
 }
 
 void check_what_is_no_file(const FileFormat& format, const Folder& folder) {
     SCOPED_TRACE("no file, a folder, nothing in it");
     const std::string missing = folder.file("missing." + format.extension);
     EXPECT_THROW(format.load(missing), LoadError);
-    EXPECT_EQ(outcome(format, missing, 0), "");
+    check_path(format, missing);
     const std::string directory = folder.file("folder." + format.extension);
     fs::create_directories(directory);
     EXPECT_THROW(format.load(directory), LoadError);
-    EXPECT_EQ(outcome(format, directory, 0), "");
+    check_path(format, directory);
     check_content(format, folder, "");
     check_content(format, folder, std::string(1000, '\0'));
 }
@@ -117,14 +168,15 @@ void fuzz_files(const FileFormat& format) {
     check_content(format, folder, format.sample);
     EXPECT_NO_THROW(format.load(folder.file("file." + format.extension))) << "the sample is valid";
     check_what_is_no_file(format, folder);
-    for (size_t part = 0; part < 100; ++part) {
-        SCOPED_TRACE("cut after " + std::to_string(part) + " %");
-        check_content(format, folder, format.sample.substr(0, part * format.sample.size() / 100));
-    }
-    for_each_seed(format.rounds, [&](unsigned seed) {
-        SCOPED_TRACE(repeat_with(seed));
+    check_contents(format, folder, 100, [&](size_t part) {
+        return Content{format.sample.substr(0, part * format.sample.size() / 100),
+                       "cut after " + std::to_string(part) + " %"};
+    });
+    const Seeds seeds = seeds_to_run(format.rounds);
+    check_contents(format, folder, seeds.count, [&](size_t k) {
+        const unsigned seed = seeds.first + static_cast<unsigned>(k);
         Random random(seed);
-        check_content(format, folder, mutated(format.sample, random));
+        return Content{mutated(format.sample, random), repeat_with(seed)};
     });
 }
 

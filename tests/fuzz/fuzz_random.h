@@ -42,12 +42,20 @@ inline unsigned number_from_environment(const char* name, unsigned otherwise) {
     return text ? static_cast<unsigned>(std::strtoul(text, nullptr, 10)) : otherwise;
 }
 
+struct Seeds {
+    unsigned first, count;
+};
+
 /// The seeds of a run: CLOTH_FUZZ_ROUNDS of them (here: `usual`), from CLOTH_FUZZ_SEED on.
+inline Seeds seeds_to_run(unsigned usual) {
+    return {number_from_environment("CLOTH_FUZZ_SEED", 1),
+            number_from_environment("CLOTH_FUZZ_ROUNDS", usual)};
+}
+
 template <typename Round>
 void for_each_seed(unsigned usual, const Round& round) {
-    const unsigned first = number_from_environment("CLOTH_FUZZ_SEED", 1);
-    const unsigned count = number_from_environment("CLOTH_FUZZ_ROUNDS", usual);
-    for (unsigned k = 0; k < count; ++k) round(first + k);
+    const Seeds seeds = seeds_to_run(usual);
+    for (unsigned k = 0; k < seeds.count; ++k) round(seeds.first + k);
 }
 
 /// How to see one round again.
