@@ -1,15 +1,13 @@
 #pragma once
 
+#include "tests/address_sanitizer.h"
+
 namespace cloth::test {
 
 /// The sanitizers make code ten times as slow. They look for errors of memory and arithmetic, which
 /// a few steps show as well as many; how cloth behaves in the long run is tested in optimised
 /// builds.
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool is_sanitized = true;
-#else
-constexpr bool is_sanitized = false;
-#endif
+constexpr bool is_sanitized = CLOTH_ADDRESS_SANITIZER;
 
 /// @return  of the steps, worlds or samples of a test, those to run
 constexpr int fewer_if_sanitized(int count) {

@@ -6,6 +6,7 @@
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
+#include "tests/sanitized.h"
 #include "tests/test_meshes.h"
 
 namespace cloth::proximity_test {
@@ -82,11 +83,8 @@ TEST(Proximity, EqualsBruteForceOnTheHumanBody) {
     } catch (const LoadError& error) {
         GTEST_SKIP() << "needs Debian's assimp-testmodels: " << error.what();
     }
-#ifdef __SANITIZE_ADDRESS__
-    const Eigen::Index count = 40;  // brute force takes 40 times as long under the sanitizers
-#else
-    const Eigen::Index count = 300;
-#endif
+    // brute force takes 40 times as long under the sanitizers
+    const Eigen::Index count = is_sanitized ? 40 : 300;
     std::mt19937 random(5);
     Points x(count, 3);
     for (Eigen::Index i = 0; i < x.rows(); ++i)
