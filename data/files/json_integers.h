@@ -12,20 +12,20 @@
 
 namespace cloth {
 
-/// Reads an integer, where `json::get_to()` would cast whatever number there is, fractions and 1e308
-/// among them.
+/// Reads an integer, where `json::get_to()` would cast whatever number there is, fractions and
+/// 1e308 among them.
 /// @param name  of the field, for the message
 /// @throws ArgumentError unless `value` is an integer that `out` can hold
 template <typename Integer>
 void read_integer(const nlohmann::json& value, const std::string& name, Integer& out) {
     static_assert(std::is_integral_v<Integer> && !std::is_same_v<Integer, bool>);
     using Limits = std::numeric_limits<Integer>;
-    bool fits = false;
-    if (value.is_number_unsigned())
-        fits = value.get<std::uint64_t>() <= static_cast<std::uint64_t>(Limits::max());
-    else if (value.is_number_integer())
-        fits = value.get<std::int64_t>() < 0 &&
-               value.get<std::int64_t>() >= static_cast<std::int64_t>(Limits::min());
+    const bool negative =
+        value.is_number_integer() && !value.is_number_unsigned() && value.get<std::int64_t>() < 0;
+    const bool fits =
+        negative ? value.get<std::int64_t>() >= static_cast<std::int64_t>(Limits::min())
+                 : value.is_number_integer() &&
+                       value.get<std::uint64_t>() <= static_cast<std::uint64_t>(Limits::max());
     if (!fits)
         throw ArgumentError(name, printable(value.dump()) + " is no integer, or too large a one",
                             "write an integer");
