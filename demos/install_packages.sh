@@ -3,7 +3,7 @@
 # the network, when they are there already. Needs root or sudo only when something is missing.
 #   demos/install_packages.sh          everything
 #   demos/install_packages.sh notorch  all but LibTorch, which training needs
-#   demos/install_packages.sh checks   as notorch, and the tools of .ci/run: format, lint, ThreadSanitizer
+#   demos/install_packages.sh checks   as notorch, and the tools of .ci/run: format, lint, sanitizers
 #   demos/install_packages.sh demo     what demos/run.sh builds: the runtime, pictures and videos
 #   demos/install_packages.sh viewer   as demo, and the window of demos/viewer
 set -euo pipefail

@@ -11,8 +11,8 @@ preset="${1:-release}"
 shift || true
 
 case "$preset" in
-  asan | notorch) demos/install_packages.sh notorch ;;
-  tsan | coverage) demos/install_packages.sh checks ;;
+  notorch) demos/install_packages.sh notorch ;;
+  asan | tsan | coverage) demos/install_packages.sh checks ;;
   *) demos/install_packages.sh ;;
 esac
 
