@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "collision/geometry/eight_lanes.h"
+#include "collision/self/offset_regions.h"
 
 namespace cloth {
 namespace {
@@ -55,9 +56,12 @@ void put(const Vec3& v, size_t lane, float (&to)[3][lanes]) {
 
 }  // namespace
 
-ElementGroups::ElementGroups(const Garment& garment)
-    : m_elements(garment), m_groups(garment.rest().vertices, garment.rest().faces) {
+ElementGroups::ElementGroups(const Garment& garment, Which which)
+    : m_which(which), m_elements(garment), m_groups(garment.rest().vertices, garment.rest().faces) {
     make_groups();
+    if (which == Which::near) return;
+    m_beyond_face = OffsetRegions(garment).beyond_faces();
+    m_rings.resize(m_groups.count());
 }
 
 void ElementGroups::make_groups() {
@@ -122,6 +126,7 @@ void ElementGroups::update(const Points& x, const Points& motion) {
             put(moved, lane, corners.motion);
         }
     for (size_t group = 0; group < m_discs.size(); ++group) update(x, motion, origin, group);
+    for (size_t group = 0; group < m_rings.size(); ++group) update(x, origin, group);
     for (Rods& rods : m_rods) update(x, motion, origin, rods);
 }
 
@@ -154,6 +159,18 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
         box.least_motion[k] = static_cast<float>(moves.min()[k]);
         box.most_motion[k] = static_cast<float>(moves.max()[k]);
     }
+}
+
+void ElementGroups::update(const Points& x, const Vec3& origin, size_t group) {
+    Rings& rings = m_rings[group];
+    const FaceGroups::Lanes& faces = m_discs[group].face;
+    for (size_t lane = 0; lane < width && faces[lane] >= 0; ++lane)
+        for (size_t k = 0; k < 3; ++k) {
+            const int corner = m_elements.faces()(faces[lane], static_cast<Eigen::Index>(k));
+            const int beyond = m_beyond_face[static_cast<size_t>(faces[lane])][k];
+            put(x.row(corner).transpose() - origin, lane, rings.corner[k]);
+            put(x.row(beyond < 0 ? corner : beyond).transpose() - origin, lane, rings.beyond[k]);
+        }
 }
 
 void ElementGroups::update(const Points& x, const Points& motion, const Vec3& origin,
@@ -203,8 +220,7 @@ ElementGroups::Near ElementGroups::near_edges(size_t group, size_t other) const 
 }
 
 /// From outside the face, above its plane by less than it is beside the face, nothing faces it.
-unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs& discs,
-                                Which which) const {
+unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs& discs) const {
     Lanes to[3], normal[3], drift[3];
     for (int k = 0; k < 3; ++k) {
         to[k] = corners.at[k][lane] - load_eight(discs.centre[k]);
@@ -215,7 +231,7 @@ unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach), radius = load_eight(discs.radius);
     const Lanes squared = dot(to, to), limit = radius + far + m_rounding;
     EightFlags found = squared <= limit * limit;
-    if (which == Which::facing) {
+    if (m_which == Which::facing) {
         const Lanes height = dot(to, normal);
         const Lanes beside = (1.0f + relative) * (radius + magnitude(height)) + m_rounding;
         found &= squared - height * height <= beside * beside;
@@ -223,9 +239,57 @@ unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs
     return bits(found);
 }
 
+/// Faces of a group whose point closest to the vertex is on their border, where a face beyond is
+/// nearer for certain: OffsetRegions in lanes.
+unsigned ElementGroups::nearer_beyond(const Corners& corners, size_t lane, size_t group) const {
+    const Rings& rings = m_rings[group];
+    const Discs& discs = m_discs[group];
+    Lanes to[3][3], along[3][3], up[3][3], normal[3];  // from each corner
+    for (size_t k = 0; k < 3; ++k) {
+        normal[k] = load_eight(discs.normal[k]);
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const Lanes corner = load_eight(rings.corner[k][axis]);
+            to[k][axis] = corners.at[axis][lane] - corner;
+            along[k][axis] = load_eight(rings.corner[(k + 1) % 3][axis]) - corner;
+            up[k][axis] = load_eight(rings.beyond[k][axis]) - corner;
+        }
+    }
+    // Each vector is off by twice the rounding of its ends, and products by their own.
+    const auto room = [&](const Lanes& a, const Lanes& b) {
+        return 2.0f * m_rounding * (a + b) + relative * a * b;
+    };
+    const Lanes edge = 2.0f * load_eight(discs.radius), distance = length_bound(to[0]) + edge;
+    const Lanes little = 2.0f * room(distance, edge);
+    Lanes where[3];  // along each edge
+    for (size_t k = 0; k < 3; ++k) where[k] = dot(to[k], along[k]);
+    EightFlags found = {};
+    for (size_t k = 0; k < 3; ++k) {
+        const size_t before = (k + 2) % 3;
+        const Lanes height = length_bound(up[k]), length = dot(along[k], along[k]);
+        const Lanes rise = dot(up[k], to[k]), share = dot(up[k], along[k]);
+        const Lanes out[3] = {along[k][1] * normal[2] - along[k][2] * normal[1],
+                              along[k][2] * normal[0] - along[k][0] * normal[2],
+                              along[k][0] * normal[1] - along[k][1] * normal[0]};
+        const EightFlags beside =
+            (where[k] > little) & (length - where[k] > little) & (dot(to[k], out) > little);
+        const Lanes sum = 2.0f * edge *
+                          (height * room(distance, edge) + distance * room(height, edge) +
+                           edge * room(distance, height));
+        found |= beside & (length * rise - share * where[k] > sum);
+        const EightFlags at_corner =
+            (where[k] < -little) & (where[before] - dot(along[before], along[before]) > little);
+        Lanes other[3];  // beyond the edge that ends here
+        for (size_t axis = 0; axis < 3; ++axis)
+            other[axis] = up[before][axis] - along[before][axis];
+        found |= at_corner & ((rise > 2.0f * room(height, distance)) |
+                              (dot(other, to[k]) > 2.0f * room(length_bound(other), distance)));
+    }
+    return bits(found);
+}
+
 /// Near: what the edges extend along the line between their middles is less than these are apart.
 /// Edges face each other where their lines are nearest between the ends of both.
-unsigned ElementGroups::compare(const Rods& a, size_t lane, const Rods& b, Which which) const {
+unsigned ElementGroups::compare(const Rods& a, size_t lane, const Rods& b) const {
     Lanes to[3], first[3], second[3], drift[3];
     for (int k = 0; k < 3; ++k) {
         to[k] = load_eight(b.middle[k]) - a.middle[k][lane];
@@ -237,7 +301,7 @@ unsigned ElementGroups::compare(const Rods& a, size_t lane, const Rods& b, Which
         length_bound(drift) + (load_eight(b.motion.radius) + a.motion.radius[lane]);
     const Lanes far = (1.0f + 1e-6f) * (m_reach + approach);
     const Lanes squared = dot(to, to), ut = dot(first, to), vt = dot(second, to);
-    if (which == Which::near) {
+    if (m_which == Which::near) {
         const Lanes limit = far + m_rounding;
         const Lanes gap = (1.0f - relative) * squared - (magnitude(ut) + magnitude(vt));
         return bits((gap <= 0.0f) | (gap * gap <= squared * limit * limit));

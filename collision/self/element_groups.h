@@ -14,30 +14,31 @@ namespace cloth {
 /// group's box are compared eight at a time, by the spheres around them and around their motions:
 /// in single precision, with room for what that rounds off.
 ///
-///     ElementGroups groups(garment);
+///     ElementGroups groups(garment, ElementGroups::Which::near);
 ///     groups.find(x, motion, reach, threads);
 ///     for (int k = 0; k < groups.found(); ++k)
-///         groups.visit(k, ElementGroups::Which::near, [&](const ElementPair& pair, int f, int g) {
+///         groups.visit(k, [&](const ElementPair& pair, int f, int g) {
 ///             ... elements of faces f and g may come within reach ...
 ///         });
 class ElementGroups {
  public:
-    explicit ElementGroups(const Garment& garment);
+    /// near: pairs that may come within reach; facing: of these, those that may face each other at
+    /// x, see ClosestPoints, where no neighbour of the face is nearer to the vertex, see
+    /// OffsetRegions.
+    enum class Which { near, facing };
+
+    ElementGroups(const Garment& garment, Which which);
 
     /// @param x, motion  |V| x 3 (m)  @param reach  (m)  @param threads  0: as many as OpenMP gives
     void find(const Points& x, const Points& motion, double reach, int threads);
     /// Pairs of groups, in an order that depends on the arguments of find() alone.
     int found() const { return static_cast<int>(m_groups.found().size()); }
 
-    /// near: pairs that may come within reach; facing: of these, those that may face each other at
-    /// x, see ClosestPoints.
-    enum class Which { near, facing };
-
     /// Calls visit(pair, f, g) for a superset of such pairs of the k-th pair of groups. They share
     /// no vertex. The first element is owned by face f, the second by g, or is g itself. Over all k
     /// each pair comes once.
     template <typename Visit>
-    void visit(int k, Which which, const Visit& visit) const;
+    void visit(int k, const Visit& visit) const;
 
     static constexpr int pairs_at_once = 64;  ///< pairs of groups that a thread should take at once
     /// How many threads a search is worth, where so many are allowed.
@@ -55,6 +56,11 @@ class ElementGroups {
         float radius[width];
         Motions motion;
         FaceGroups::Lanes face;
+    };
+    /// The corners of a group's faces, and of the faces beyond the edges from each corner to the
+    /// next the third: where there is none, the corner again.
+    struct Rings {
+        float corner[3][3][width], beyond[3][3][width];
     };
     /// Eight edges of a group; lanes without one are far from all.
     struct Rods {
@@ -82,22 +88,27 @@ class ElementGroups {
     void make_groups();
     void update(const Points& x, const Points& motion);
     void update(const Points& x, const Points& motion, const Vec3& origin, size_t group);
+    void update(const Points& x, const Vec3& origin, size_t group);  ///< of its faces' rings
     void update(const Points& x, const Points& motion, const Vec3& origin, Rods& rods) const;
     // A bit for each lane.
     unsigned compare(const Corners& corners, const Box& box) const;
     unsigned compare(const Rods& rods, const Box& box) const;
-    unsigned compare(const Corners& corners, size_t lane, const Discs& discs, Which which) const;
-    unsigned compare(const Rods& a, size_t lane, const Rods& b, Which which) const;
+    unsigned compare(const Corners& corners, size_t lane, const Discs& discs) const;
+    unsigned compare(const Rods& a, size_t lane, const Rods& b) const;
+    unsigned nearer_beyond(const Corners& corners, size_t lane, size_t group) const;
     Near near_edges(size_t group, size_t other) const;  ///< those that come near the other's box
     template <typename Visit>
-    void visit_corners(size_t a, size_t b, Which which, const Visit& visit) const;
+    void visit_corners(size_t a, size_t b, const Visit& visit) const;
     template <typename Visit>
-    void visit_edges(size_t a, size_t b, Which which, const Visit& visit) const;
+    void visit_edges(size_t a, size_t b, const Visit& visit) const;
 
+    Which m_which;
     SelfElements m_elements;
+    std::vector<std::array<int, 3>> m_beyond_face;  ///< see OffsetRegions; near: empty
     FaceGroups m_groups;
     std::vector<Begin> m_begin;  ///< groups + 1
     std::vector<Discs> m_discs;  ///< of each group
+    std::vector<Rings> m_rings;  ///< likewise; near: empty
     std::vector<Box> m_boxes;
     std::vector<Rods> m_rods;
     std::vector<Corners> m_corners;
@@ -107,21 +118,23 @@ class ElementGroups {
 };
 
 template <typename Visit>
-void ElementGroups::visit(int k, Which which, const Visit& visit) const {
+void ElementGroups::visit(int k, const Visit& visit) const {
     const auto& pair = m_groups.found()[static_cast<size_t>(k)];
     const auto a = static_cast<size_t>(pair[0]), b = static_cast<size_t>(pair[1]);
-    visit_corners(a, b, which, visit);
-    if (a != b) visit_corners(b, a, which, visit);
-    visit_edges(a, b, which, visit);
+    visit_corners(a, b, visit);
+    if (a != b) visit_corners(b, a, visit);
+    visit_edges(a, b, visit);
 }
 
 template <typename Visit>
-void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& visit) const {
+void ElementGroups::visit_corners(size_t a, size_t b, const Visit& visit) const {
     const Discs& discs = m_discs[b];
     for (size_t c = m_begin[a].corners; c < m_begin[a + 1].corners; ++c) {
         const Corners& corners = m_corners[c];
         for_each_lane(compare(corners, m_boxes[b]), [&](size_t i) {
-            for_each_lane(compare(corners, i, discs, which), [&](size_t lane) {
+            unsigned lanes = compare(corners, i, discs);
+            if (lanes != 0 && m_which == Which::facing) lanes &= ~nearer_beyond(corners, i, b);
+            for_each_lane(lanes, [&](size_t lane) {
                 const int v = corners.vertex[i], g = discs.face[lane];
                 const auto at = m_elements.faces().row(g);
                 if (v != at[0] && v != at[1] && v != at[2])
@@ -132,7 +145,7 @@ void ElementGroups::visit_corners(size_t a, size_t b, Which which, const Visit& 
 }
 
 template <typename Visit>
-void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& visit) const {
+void ElementGroups::visit_edges(size_t a, size_t b, const Visit& visit) const {
     const auto& edges = m_elements.edges();
     const size_t begin = m_begin[b].rods;
     const Near of_a = near_edges(a, b), of_b = near_edges(b, a);
@@ -143,7 +156,7 @@ void ElementGroups::visit_edges(size_t a, size_t b, Which which, const Visit& vi
             for (size_t s = a == b ? r : begin; s < m_begin[b + 1].rods; ++s) {
                 unsigned lanes = of_b[s - begin];
                 if (r == s) lanes &= ~1u << i;  // each pair once
-                if (lanes != 0) lanes &= compare(m_rods[r], i, m_rods[s], which);
+                if (lanes != 0) lanes &= compare(m_rods[r], i, m_rods[s]);
                 for_each_lane(lanes, [&, a0 = a0, a1 = a1](size_t lane) {
                     const int second = m_rods[s].edge[lane];
                     const auto [b0, b1] = edges[static_cast<size_t>(second)];

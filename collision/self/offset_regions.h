@@ -17,6 +17,9 @@ class OffsetRegions {
  public:
     explicit OffsetRegions(const Garment& garment);
 
+    /// |F|: third vertex of the face beyond the edge from each corner to the next, -1: none.
+    const std::vector<std::array<int, 3>>& beyond_faces() const { return m_beyond_face; }
+
     /// @param pair    elements that face each other
     /// @param points  theirs that are closest
     /// @param x       |V| x 3 (m)
@@ -30,9 +33,8 @@ class OffsetRegions {
 
     Faces m_faces;
     std::vector<std::array<int, 2>> m_beside_edge;  ///< |E|: third vertices of its faces, -1: none
-    std::vector<std::array<int, 3>> m_beyond_face;  ///< |F|: third vertex of the face beyond the
-                                                    ///< edge from each corner to the next, -1: none
-    std::vector<std::vector<int>> m_neighbours;     ///< |V|: at the other ends of its edges
+    std::vector<std::array<int, 3>> m_beyond_face;
+    std::vector<std::vector<int>> m_neighbours;  ///< |V|: at the other ends of its edges
 };
 
 }  // namespace cloth

@@ -49,7 +49,7 @@ bool crosses(const ElementPair& elements, const Points& x0, const Points& motion
 }
 
 SelfCrossings::SelfCrossings(const Garment& garment, FaceParts parts)
-    : m_groups(garment), m_parts_of_faces(std::move(parts)) {
+    : m_groups(garment, ElementGroups::Which::near), m_parts_of_faces(std::move(parts)) {
 }
 
 const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
@@ -57,15 +57,14 @@ const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points&
     m_groups.find(x0, m_motion, touching, threads);
     std::atomic<bool> passed_over = false;
     const auto find = [&](int k, std::vector<SelfPair>& out) {
-        m_groups.visit(
-            k, ElementGroups::Which::near, [&](const ElementPair& elements, int f, int g) {
-                SelfPair pair;
-                if (m_parts_of_faces.same(f, g)) return;
-                if (crosses(elements, x0, m_motion, pair))
-                    out.push_back(pair);
-                else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
-                    passed_over.store(true, std::memory_order_relaxed);
-            });
+        m_groups.visit(k, [&](const ElementPair& elements, int f, int g) {
+            SelfPair pair;
+            if (m_parts_of_faces.same(f, g)) return;
+            if (crosses(elements, x0, m_motion, pair))
+                out.push_back(pair);
+            else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
+                passed_over.store(true, std::memory_order_relaxed);
+        });
     };
     gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_found, find,
                          ElementGroups::pairs_at_once);

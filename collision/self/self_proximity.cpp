@@ -35,7 +35,7 @@ double longest_edge(const Garment& garment) {
 }  // namespace
 
 SelfProximity::SelfProximity(const Garment& garment, double thickness, FaceParts parts)
-    : m_groups(garment),
+    : m_groups(garment, ElementGroups::Which::facing),
       m_regions(garment),
       m_rest(garment.rest().vertices),
       m_piece(garment_pieces(garment)),
@@ -70,12 +70,11 @@ bool SelfProximity::is_near(const ElementPair& elements, const Points& x, const 
 void SelfProximity::find(const Points& x, const Points& motion, double reach, int threads) {
     m_groups.find(x, motion, reach, threads);
     const auto find = [&](int k, std::vector<SelfPair>& out) {
-        m_groups.visit(
-            k, ElementGroups::Which::facing, [&](const ElementPair& elements, int f, int g) {
-                SelfPair pair;
-                if (!m_parts_of_faces.same(f, g) && is_near(elements, x, motion, reach, pair))
-                    out.push_back(pair);
-            });
+        m_groups.visit(k, [&](const ElementPair& elements, int f, int g) {
+            SelfPair pair;
+            if (!m_parts_of_faces.same(f, g) && is_near(elements, x, motion, reach, pair))
+                out.push_back(pair);
+        });
     };
     gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_pairs, find,
                          ElementGroups::pairs_at_once);
@@ -85,13 +84,15 @@ void SelfProximity::find(const Points& x, const Points& motion, double reach, in
 /// Whoever goes through the pairs one after the other should not depend on how faces are grouped.
 void SelfProximity::sort_pairs() {
     m_order.clear();
-    for (const SelfPair& pair : m_pairs) {
-        const auto [first, second] = pair.elements.element;
-        m_order.push_back({pair.elements.edges, first, second, static_cast<int>(m_order.size())});
+    for (const SelfPair& pair : m_pairs) {  // vertices and faces first, then by the elements
+        const std::uint64_t edges = pair.elements.edges;
+        const auto first = static_cast<std::uint64_t>(pair.elements.element[0]);
+        const auto second = static_cast<std::uint64_t>(pair.elements.element[1]);
+        m_order.push_back({edges << 62 | first << 31 | second, m_order.size()});
     }
     std::sort(m_order.begin(), m_order.end());
     m_sorted.clear();
-    for (const auto& place : m_order) m_sorted.push_back(m_pairs[static_cast<size_t>(place[3])]);
+    for (const auto& place : m_order) m_sorted.push_back(m_pairs[place[1]]);
     m_pairs.swap(m_sorted);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "collision/self/element_groups.h"
@@ -66,7 +68,7 @@ class SelfProximity {
     double m_thickness;
     double m_rest_reach;  ///< vertices farther apart are of elements that are not near at rest (m)
     std::vector<SelfPair> m_pairs, m_sorted;
-    std::vector<std::array<int, 4>> m_order;  ///< edges or not, the elements, index of the pair
+    std::vector<std::array<std::uint64_t, 2>> m_order;  ///< whose pair, and its index
     std::vector<std::vector<SelfPair>> m_parts;
 };
 
