@@ -81,7 +81,7 @@ struct ObstacleTrees::KnownMeshes : Meshes {
     std::unique_ptr<FittedMotion> build_motion(const Obstacle& mesh) {
         ++counts.builds;
         return std::make_unique<FittedMotion>(
-            FittedMotion{MotionTree(mesh.x0, *mesh.faces), {}, {}});
+            FittedMotion{MotionTree(mesh.x0, *mesh.faces), mesh.x0, mesh.x0});
     }
 
     std::shared_ptr<const MeshSurface> surface(const Obstacle& obstacle, const Points& x) {
@@ -116,21 +116,17 @@ struct ObstacleTrees::KnownMeshes : Meshes {
     void prepare_motion(const Obstacle& obstacle) {
         KnownMesh* mesh = find(obstacle);
         if (mesh && mesh->motions.is_empty() && obstacle.x0.allFinite())
-            mesh->motions.add(step, build_motion(obstacle));
+            mesh->motions.prepare(build_motion(obstacle));
     }
 
     void adopt(KnownMeshes& other, const Obstacle& obstacle) {
         KnownMesh* mine = find(obstacle);
         KnownMesh* theirs = other.find(obstacle);
         if (!mine || !theirs) return;
-        add_copy(theirs->surfaces, mine->surfaces);
-        add_copy(theirs->motions, mine->motions);
-    }
-
-    template <typename Tree>
-    void add_copy(const TreeFits<Tree>& from, TreeFits<Tree>& to) {
-        if (!to.is_empty()) return;
-        if (std::unique_ptr<Tree> copy = from.copy()) to.add(step, std::move(copy));
+        if (mine->surfaces.is_empty())  // one that has a pose, which may be asked for
+            if (auto copy = theirs->surfaces.copy()) mine->surfaces.add(step, std::move(copy));
+        if (mine->motions.is_empty())
+            if (auto copy = theirs->motions.copy()) mine->motions.prepare(std::move(copy));
     }
 
     ObstacleTreesSettings settings;

@@ -28,12 +28,19 @@ class TreeFits {
         return nullptr;
     }
 
-    /// Whether nothing was added yet.
-    bool is_empty() const { return m_fits.empty(); }
+    /// Whether nothing was added or prepared yet.
+    bool is_empty() const { return m_fits.empty() && !m_spares->has(); }
 
     /// Of the tree that was used last; null: there is none.
     std::unique_ptr<Tree> copy() const {
-        return m_fits.empty() ? nullptr : std::make_unique<Tree>(*m_fits.back().tree);
+        return m_fits.empty() ? m_spares->copy() : std::make_unique<Tree>(*m_fits.back().tree);
+    }
+
+    /// Keeps a tree for take(), and a copy: the first two steps find them there, and those that
+    /// follow take turns with them. To copy one takes as long as ten fits.
+    void prepare(std::unique_ptr<Tree> tree) {
+        m_spares->put(std::make_unique<Tree>(*tree));
+        m_spares->put(std::move(tree));
     }
 
     /// A tree to be fitted and added; null: there is none yet, build it.
@@ -71,6 +78,14 @@ class TreeFits {
             std::unique_ptr<Tree> tree = std::move(m_trees.back());
             m_trees.pop_back();
             return tree;
+        }
+        bool has() {
+            const std::lock_guard<std::mutex> lock(m_mutex);
+            return !m_trees.empty();
+        }
+        std::unique_ptr<Tree> copy() {
+            const std::lock_guard<std::mutex> lock(m_mutex);
+            return m_trees.empty() ? nullptr : std::make_unique<Tree>(*m_trees.back());
         }
         void put(std::unique_ptr<Tree> tree) {
             const std::lock_guard<std::mutex> lock(m_mutex);
