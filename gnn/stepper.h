@@ -88,8 +88,8 @@ class Stepper {
     /// on stiff cloth may be thrown.
     virtual bool accepts_any_dt() const { return fixed_dt() == 0.0; }
 
-    /// Builds ahead of time what steps of this length (s) need, such as factorisations. Without it
-    /// the first such step builds them.
+    /// Builds ahead of time what steps of this length (s) need, and parts of them, such as
+    /// factorisations. Without it the first such step, or step in so many parts, builds them.
     virtual void prepare(double dt) { (void)dt; }
 
     /// @param boundary  obstacle surfaces at t and t+dt, pin targets at t+dt, gravity (m/s^2)

@@ -259,6 +259,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
         auto stepper = make_solver(name.substr(0, limit), scene, settings);
         if (!stepper->set_max_ms(ms))
             throw UsageError("solver " + name + ": knows no limit of its time");
+        stepper->prepare(scene.frame_time());  // or steps in fewer parts would factorise first
         return stepper;
     }
     const size_t tilde = name.find('~');

@@ -118,7 +118,9 @@ class ClothStepper : public Stepper {
     /// time for five iterations; the search for what was passed through; small steps, which are
     /// halved in number where there is no time for two iterations each; the other iterations. The
     /// start, one iteration for each part and contact projection take the time that they take.
-    /// Newton's method takes no notice (false).
+    /// A step goes beyond the limit where these take longer than they did before, or where it is
+    /// the first of its length and prepare() was not called. Newton's method takes no notice
+    /// (false).
     bool set_max_ms(double ms) override;
     /// Newton's method takes no notice (false).
     bool set_max_iterations(int most) override;
