@@ -126,8 +126,14 @@ void ElementGroups::update(const Points& x, const Points& motion) {
             put(moved, lane, corners.motion);
         }
     for (size_t group = 0; group < m_discs.size(); ++group) update(x, motion, origin, group);
-    for (size_t group = 0; group < m_rings.size(); ++group) update(x, origin, group);
     for (Rods& rods : m_rods) update(x, motion, origin, rods);
+    if (m_which == Which::near) return;
+    m_places.resize(static_cast<size_t>(x.rows()));
+    for (size_t i = 0; i < m_places.size(); ++i)
+        for (Eigen::Index axis = 0; axis < 3; ++axis)
+            m_places[i][static_cast<size_t>(axis)] =
+                static_cast<float>(x(static_cast<Eigen::Index>(i), axis) - origin[axis]);
+    for (size_t group = 0; group < m_rings.size(); ++group) update_rings(group);
 }
 
 void ElementGroups::update(const Points& x, const Points& motion, const Vec3& origin,
@@ -161,15 +167,19 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
     }
 }
 
-void ElementGroups::update(const Points& x, const Vec3& origin, size_t group) {
+void ElementGroups::update_rings(size_t group) {
     Rings& rings = m_rings[group];
     const FaceGroups::Lanes& faces = m_discs[group].face;
     for (size_t lane = 0; lane < width && faces[lane] >= 0; ++lane)
         for (size_t k = 0; k < 3; ++k) {
             const int corner = m_elements.faces()(faces[lane], static_cast<Eigen::Index>(k));
             const int beyond = m_beyond_face[static_cast<size_t>(faces[lane])][k];
-            put(x.row(corner).transpose() - origin, lane, rings.corner[k]);
-            put(x.row(beyond < 0 ? corner : beyond).transpose() - origin, lane, rings.beyond[k]);
+            const auto& a = m_places[static_cast<size_t>(corner)];
+            const auto& b = m_places[static_cast<size_t>(beyond < 0 ? corner : beyond)];
+            for (size_t axis = 0; axis < 3; ++axis) {
+                rings.corner[k][axis][lane] = a[axis];
+                rings.beyond[k][axis][lane] = b[axis];
+            }
         }
 }
 

@@ -88,7 +88,7 @@ class ElementGroups {
     void make_groups();
     void update(const Points& x, const Points& motion);
     void update(const Points& x, const Points& motion, const Vec3& origin, size_t group);
-    void update(const Points& x, const Vec3& origin, size_t group);  ///< of its faces' rings
+    void update_rings(size_t group);
     void update(const Points& x, const Points& motion, const Vec3& origin, Rods& rods) const;
     // A bit for each lane.
     unsigned compare(const Corners& corners, const Box& box) const;
@@ -106,9 +106,10 @@ class ElementGroups {
     SelfElements m_elements;
     std::vector<std::array<int, 3>> m_beyond_face;  ///< see OffsetRegions; near: empty
     FaceGroups m_groups;
-    std::vector<Begin> m_begin;  ///< groups + 1
-    std::vector<Discs> m_discs;  ///< of each group
-    std::vector<Rings> m_rings;  ///< likewise; near: empty
+    std::vector<Begin> m_begin;                  ///< groups + 1
+    std::vector<Discs> m_discs;                  ///< of each group
+    std::vector<Rings> m_rings;                  ///< likewise; near: empty
+    std::vector<std::array<float, 3>> m_places;  ///< |V| (m), from the first; near: empty
     std::vector<Box> m_boxes;
     std::vector<Rods> m_rods;
     std::vector<Corners> m_corners;
@@ -132,13 +133,17 @@ void ElementGroups::visit_corners(size_t a, size_t b, const Visit& visit) const 
     for (size_t c = m_begin[a].corners; c < m_begin[a + 1].corners; ++c) {
         const Corners& corners = m_corners[c];
         for_each_lane(compare(corners, m_boxes[b]), [&](size_t i) {
+            const int v = corners.vertex[i];
             unsigned lanes = compare(corners, i, discs);
+            for_each_lane(lanes, [&](size_t lane) {
+                const auto at = m_elements.faces().row(discs.face[lane]);
+                if (v == at[0] || v == at[1] || v == at[2]) lanes &= ~(1u << lane);
+            });
             if (lanes != 0 && m_which == Which::facing) lanes &= ~nearer_beyond(corners, i, b);
             for_each_lane(lanes, [&](size_t lane) {
-                const int v = corners.vertex[i], g = discs.face[lane];
+                const int g = discs.face[lane];
                 const auto at = m_elements.faces().row(g);
-                if (v != at[0] && v != at[1] && v != at[2])
-                    visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corners.face[i], g);
+                visit(ElementPair{{v, at[0], at[1], at[2]}, {v, g}, false}, corners.face[i], g);
             });
         });
     }
