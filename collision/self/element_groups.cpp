@@ -168,7 +168,7 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
 }
 
 void ElementGroups::update_rings(size_t group) {
-    Rings& rings = m_rings[group];
+    Rings& around = m_rings[group];
     const FaceGroups::Lanes& faces = m_discs[group].face;
     for (size_t lane = 0; lane < width && faces[lane] >= 0; ++lane)
         for (size_t k = 0; k < 3; ++k) {
@@ -177,8 +177,8 @@ void ElementGroups::update_rings(size_t group) {
             const auto& a = m_places[static_cast<size_t>(corner)];
             const auto& b = m_places[static_cast<size_t>(beyond < 0 ? corner : beyond)];
             for (size_t axis = 0; axis < 3; ++axis) {
-                rings.corner[k][axis][lane] = a[axis];
-                rings.beyond[k][axis][lane] = b[axis];
+                around.corner[k][axis][lane] = a[axis];
+                around.beyond[k][axis][lane] = b[axis];
             }
         }
 }
@@ -252,16 +252,16 @@ unsigned ElementGroups::compare(const Corners& corners, size_t lane, const Discs
 /// Faces of a group whose point closest to the vertex is on their border, where a face beyond is
 /// nearer for certain: OffsetRegions in lanes.
 unsigned ElementGroups::nearer_beyond(const Corners& corners, size_t lane, size_t group) const {
-    const Rings& rings = m_rings[group];
+    const Rings& around = m_rings[group];
     const Discs& discs = m_discs[group];
     Lanes to[3][3], along[3][3], up[3][3], normal[3];  // from each corner
     for (size_t k = 0; k < 3; ++k) {
         normal[k] = load_eight(discs.normal[k]);
         for (size_t axis = 0; axis < 3; ++axis) {
-            const Lanes corner = load_eight(rings.corner[k][axis]);
+            const Lanes corner = load_eight(around.corner[k][axis]);
             to[k][axis] = corners.at[axis][lane] - corner;
-            along[k][axis] = load_eight(rings.corner[(k + 1) % 3][axis]) - corner;
-            up[k][axis] = load_eight(rings.beyond[k][axis]) - corner;
+            along[k][axis] = load_eight(around.corner[(k + 1) % 3][axis]) - corner;
+            up[k][axis] = load_eight(around.beyond[k][axis]) - corner;
         }
     }
     // Each vector is off by twice the rounding of its ends, and products by their own.

@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(
                       substepped(4),
                       small_steps("SmallSteps", StepSettings::in_small_steps(), 1e-6),
                       small_steps("NewtonInSmallSteps", StepSettings::newton_in_small_steps(), 2e-5,
-                                  5.0),
+                                  3.7),
                       xpbd(1), xpbd(20), xpbd(100)),
     case_name);
 
