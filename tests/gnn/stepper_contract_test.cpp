@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(reference(), quasi_newton(1), quasi_newton(5), quasi_newton(20), bdf2(),
                       substepped(4),
                       small_steps("SmallSteps", StepSettings::in_small_steps(), 1e-6),
-                      small_steps("NewtonInSmallSteps", StepSettings::newton_in_small_steps(), 2e-5,
-                                  3.7),
+                      small_steps("NewtonInSmallSteps", StepSettings::newton_in_small_steps(),
+                                  2.5e-5, 4.0),
                       xpbd(1), xpbd(20), xpbd(100)),
     case_name);
 
