@@ -10,7 +10,7 @@ StepperCase bullet(const std::string& name, const BulletClothSettings& settings)
     const auto make = [settings](const Garment& garment) {
         return std::make_unique<BulletClothStepper>(garment, settings);
     };
-    StepperCase result{name, make, 5e-5, {}, 1.7};  // in single precision
+    StepperCase result{name, make, 1e-4, {}};
     result.exceptions = {
         {Promise::free_fall, "it falls in sub-steps, by another closed form (tested on its own)"},
         {Promise::translation_equivariance, "floats: far from the origin contacts switch earlier"},

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <omp.h>
 
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "collision/proximity/proximity.h"
 #include "gnn/stepper.h"
 #include "tests/gnn/physics/solver/solver_scenes.h"
+#include "tests/sanitized.h"
 
 /// What every Stepper promises, as tests that any test program can instantiate for its steppers:
 ///
@@ -39,10 +39,8 @@ enum class Promise {
 struct StepperCase {
     std::string name;  ///< letters and digits
     std::function<std::unique_ptr<Stepper>(const Garment&)> make;
-    double tolerance = 1e-7;  ///< of positions where exact arithmetic would give equality (m),
-                              ///< after the first step
+    double tolerance = 1e-7;  ///< of positions where exact arithmetic would give equality (m)
     std::map<Promise, std::string> exceptions;  ///< not promised, and why
-    double growth = 1.0;                        ///< of the tolerance from step to step
 };
 
 inline std::string case_name(const ::testing::TestParamInfo<StepperCase>& info) {
@@ -76,9 +74,7 @@ class StepperContract : public ::testing::TestWithParam<StepperCase> {
         return (a - b).rowwise().norm().maxCoeff();
     }
 
-    static double tolerance(int steps) {
-        return GetParam().tolerance * std::pow(GetParam().growth, steps - 1);
-    }
+    static double tolerance() { return GetParam().tolerance; }
 };
 
 #define CLOTH_SKIP_UNLESS_PROMISED(promise)                     \
@@ -154,7 +150,7 @@ TEST_P(StepperContract, FreeFallEqualsTheClosedForm) {
     // Backward Euler: v_k = v0 + k h g, x_n = x0 + h (v_1 + ... + v_n).
     const Vec3 travel = steps * h * v0 + 0.5 * steps * (steps + 1) * h * h * boundary.gravity;
     const Points expected = garment.rest().vertices.rowwise() + travel.transpose();
-    EXPECT_LE(max_distance(state.x, expected), tolerance(steps));
+    EXPECT_LE(max_distance(state.x, expected), tolerance());
     EXPECT_NEAR(state.time, steps * h, 1e-12);
 }
 
@@ -166,7 +162,7 @@ TEST_P(StepperContract, RestStaysAtRest) {
         boundary.gravity.setZero();
         boundary.pin_targets = rows_of(garment.rest().vertices, garment.pins());
         const ClothState state = after({garment, ClothState::at_rest(garment), boundary}, 10);
-        EXPECT_LE(max_distance(state.x, garment.rest().vertices), tolerance(1));
+        EXPECT_LE(max_distance(state.x, garment.rest().vertices), tolerance());
     }
 }
 
@@ -191,18 +187,29 @@ TEST_P(StepperContract, ATranslatedSceneMovesAlike) {
     const SolverScene scene = busy_scene();
     const ClothState here = after(scene, 4), there = after(moved(scene, pose), 4);
     const Points back = there.x.rowwise() - pose.translation().transpose();
-    EXPECT_LE(max_distance(back, here.x), tolerance(4));
+    EXPECT_LE(max_distance(back, here.x), tolerance());
 }
 
 TEST_P(StepperContract, ASceneTurnedAboutTheVerticalMovesAlike) {
     CLOTH_SKIP_UNLESS_PROMISED(Promise::yaw_equivariance);
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::AngleAxisd(1.1, Vec3::UnitY()).toRotationMatrix();
     const SolverScene scene = busy_scene();
-    for (const double angle : {1.1, 2.3, 3.6, 5.0}) {
+    // Rounding grows from step to step, and differs in code that sanitizers made.
+    const int steps = is_sanitized ? 2 : 4;
+    const ClothState here = after(scene, steps), there = after(moved(scene, pose), steps);
+    EXPECT_LE(max_distance(there.x * pose.linear(), here.x), tolerance());
+}
+
+TEST_P(StepperContract, ASceneTurnedByAnyAngleMovesAlikeAtFirst) {
+    CLOTH_SKIP_UNLESS_PROMISED(Promise::yaw_equivariance);
+    const SolverScene scene = busy_scene();
+    for (const double angle : {2.3, 3.6, 5.0}) {
         Pose pose = Pose::Identity();
         pose.linear() = Eigen::AngleAxisd(angle, Vec3::UnitY()).toRotationMatrix();
-        for (const int steps : {1, 2, 4}) {
+        for (const int steps : {1, 2}) {
             const ClothState here = after(scene, steps), there = after(moved(scene, pose), steps);
-            EXPECT_LE(max_distance(there.x * pose.linear(), here.x), tolerance(steps))
+            EXPECT_LE(max_distance(there.x * pose.linear(), here.x), tolerance())
                 << "turned by " << angle << ", " << steps << " steps";
         }
     }
@@ -217,7 +224,7 @@ TEST_P(StepperContract, TheOrderOfVerticesAndFacesDoesNotMatter) {
     // Not std::shuffle, whose result the standard leaves open.
     for (size_t i = order.size() - 1; i > 0; --i) std::swap(order[i], order[random() % (i + 1)]);
     const ClothState plain = after(scene, 3), other = after(renumbered(scene, order), 3);
-    EXPECT_LE(max_distance(other.x, rows_of(plain.x, order)), tolerance(3));
+    EXPECT_LE(max_distance(other.x, rows_of(plain.x, order)), tolerance());
 }
 
 TEST_P(StepperContract, TakesAnyTimeStep) {
