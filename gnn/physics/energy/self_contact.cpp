@@ -69,6 +69,7 @@ void SelfContactEnergy::take_pairs() {
         }
     }
     m_pairs.clear();
+    m_pairs_of_vertices = 0;
     for (const SelfPair& pair : m_proximity->pairs()) {
         if (is_tangled(pair)) continue;
         const std::array<int, 4>& v = pair.elements.vertex;
@@ -82,6 +83,7 @@ void SelfContactEnergy::take_pairs() {
             share = m_area[v[0]] / m_vertex_pairs[static_cast<size_t>(first)];
         m_pairs.push_back({v, pair.weight, pair.normal, m_settings.weight * share, pair.distance,
                            m_mean_mass * share});
+        if (!pair.elements.edges) ++m_pairs_of_vertices;
     }
 }
 

@@ -24,12 +24,12 @@ class SelfContactEnergy {
  public:
     /// A pair as a row of a linear map: distance(x) = normal . sum of weight x.
     struct Pair {
-        std::array<int, 4> vertex;
-        std::array<double, 4> weight;
-        Vec3 normal;
-        double stiffness;  ///< w_p (N/m^2)
-        double start;      ///< distance at t (m)
-        double mass;       ///< that the pair stands for (kg)
+        std::array<int, 4> vertex;     ///< the vertex and the face's, or two of each edge
+        std::array<double, 4> weight;  ///< 1 and -1 on either side
+        Vec3 normal;                   ///< unit, to the side of the first vertex
+        double stiffness;              ///< w_p (N/m^2)
+        double start;                  ///< distance at t (m)
+        double mass;                   ///< that the pair stands for (kg)
 
         double distance(const Points& x) const {
             const auto at = [&](size_t k) { return weight[k] * x.row(vertex[k]); };
@@ -65,7 +65,9 @@ class SelfContactEnergy {
     /// The same for a trial step that comes from `from`: no pair gets much deeper in one step.
     void limit_entry(const Points& from, Points& trial) const;
 
-    const std::vector<Pair>& pairs() const { return m_pairs; }  ///< of this step
+    /// Of this step: those of a vertex and a face come first, ascending by vertex.
+    const std::vector<Pair>& pairs() const { return m_pairs; }
+    size_t vertex_pairs() const { return m_pairs_of_vertices; }  ///< so many have a vertex
 
  private:
     void mark_tangled(const std::vector<Tangle>* tangles);
@@ -84,6 +86,7 @@ class SelfContactEnergy {
     Points m_motion;              ///< |V| x 3 (m)
     std::vector<int> m_vertex_pairs, m_edge_pairs;  ///< |V|, |E|: pairs of an element
     std::vector<Pair> m_pairs;
+    size_t m_pairs_of_vertices = 0;
 };
 
 }  // namespace cloth

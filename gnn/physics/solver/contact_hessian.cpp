@@ -81,6 +81,7 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
         }
         m_self_contacts.push_back(contact);
     }
+    m_edge_pairs.begin_step(energy, row_of.size());
 }
 
 double ContactHessian::SelfContact::along(const Points& direction) const {
@@ -151,10 +152,23 @@ bool ContactHessian::anticipate(const Points& step) {
         if (after > before) contact.stiffness = secant(contact.pair_weight, before, after);
         any = any || contact.stiffness > 0.0 || contact.friction > 0.0;
     }
+    if (!m_self_contacts.empty()) lump_edge_pairs();
     if (m_goals.active()) m_goals.anticipate(step);
     gather_blocks();
     m_anticipated = true;
     return any || !m_goals.blocks().empty();
+}
+
+void ContactHessian::lump_edge_pairs() {
+    for (const LumpedEdgePairs::Lumped& lumped : m_edge_pairs.lumped()) {
+        SelfContact& edges = m_self_contacts[lumped.pair];
+        for (size_t k = 0; k < 4; ++k) {
+            SelfContact& of_vertex = m_self_contacts[lumped.to[k]];
+            of_vertex.stiffness += lumped.share[k] * edges.stiffness;
+            of_vertex.friction += lumped.share[k] * edges.friction;
+        }
+        edges.stiffness = edges.friction = 0.0;
+    }
 }
 
 void ContactHessian::gather_blocks() {

@@ -5,6 +5,7 @@
 
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/solver/goal_hessian.h"
+#include "gnn/physics/solver/lumped_edge_pairs.h"
 #include "gnn/physics/solver/stiffness.h"
 
 namespace cloth {
@@ -26,7 +27,8 @@ namespace cloth {
 ///
 ///     6 w depth c c'         c = (weight n) of the pair's four vertices
 ///
-/// and friction between layers the block of friction, shared out over these four.
+/// and friction between layers the block of friction, shared out over these four. Pairs of edges
+/// are lumped, see LumpedEdgePairs.
 ///
 /// Skinned goals add the blocks of GoalHessian.
 class ContactHessian {
@@ -37,8 +39,8 @@ class ContactHessian {
     /// Linearises at x (|V| x 3).
     void linearise(const IncrementalPotential& potential, const Points& x);
 
-    /// Stiffens contacts that `step` (free, n x 3), a step without these blocks, would press
-    /// deeper. Returns whether any block is not zero.
+    /// Once after linearise(): stiffens contacts that `step` (free, n x 3), a step without these
+    /// blocks, would press deeper. Returns whether any block is not zero.
     bool anticipate(const Points& step);
 
     // What follows is about what anticipate() has left.
@@ -117,6 +119,7 @@ class ContactHessian {
     };
     void begin_vertices(const IncrementalPotential& potential, const std::vector<int>& row_of);
     void begin_self_contact(const SelfContactEnergy& energy, const std::vector<int>& row_of);
+    void lump_edge_pairs();
     void gather_blocks();
     static double secant(double weight, double before, double after);
     static double rise(const Ridge& ridge, const Points& step);
@@ -128,6 +131,7 @@ class ContactHessian {
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
+    LumpedEdgePairs m_edge_pairs;
     std::vector<Block> m_blocks;
     bool m_anticipated = false;
     const SelfContactEnergy* m_self = nullptr;
