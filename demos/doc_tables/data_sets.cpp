@@ -159,6 +159,14 @@ std::vector<DataSet> data_sets() {
          {}},
         motions("motions", ""),
         motions("motions_no_limbs", " --no-limbs"),
+        {"clip_times",
+         figures + "clip_times.json",
+         "build/release/demos/hard_cases"
+         " --motions ../shared/data/motions/validation,../shared/data/motions/train"
+         " --garment tshirt --steppers default,xpbd-40 --no-pictures --out OUT",
+         "hard_cases.json",
+         {},
+         {}},
         {"bullet_scenes",
          figures + "bullet_scenes.json",
          "OMP_NUM_THREADS=1 build/release/demos/bullet_scenes --scene small"

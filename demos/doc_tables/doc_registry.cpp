@@ -44,6 +44,7 @@ const Registry& doc_registry() {
          {"lookbook", {"lookbook"}, lookbook_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
+         {"clip_times", {"clip_times"}, clip_times_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},
          {"bullet_demos", {"bullet_demos"}, bullet_demos_table},
          {"engine", {"engine"}, engine_table},

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "demos/compare/statistics.h"
+
 namespace cloth {
 
 namespace {
@@ -87,6 +89,34 @@ MarkdownTable motions_table(const std::vector<DataFile>& files) {
                  decimals(highest(rows, "/stretch_p99"), 2),
                  stepper == "reference" ? "–" : overstretched(file, rows)});
         }
+    }
+    return table;
+}
+
+MarkdownTable clip_times_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver",
+                     "clips",
+                     "ms per step: median of the clips",
+                     "95 % of a clip's steps, over its median: middle clip / worst",
+                     "longest step of a clip, over its median: middle clip / worst",
+                     "clips with a step above 3 medians"};
+    for (const std::string& stepper : names_of(files.at(0).rows("rows"), "/stepper")) {
+        const std::vector<DataRow> rows = rows_of(files.at(0), stepper);
+        std::vector<double> medians, p95, longest;
+        for (const DataRow& row : rows) {
+            medians.push_back(row.number("/ms_median"));
+            p95.push_back(row.number("/ms_p95") / medians.back());
+            longest.push_back(row.number("/ms_longest") / medians.back());
+        }
+        const auto middle_and_worst = [](const std::vector<double>& values) {
+            return significant(median(values), 2) + " / " + significant(quantile(values, 1.0), 2);
+        };
+        table.rows.push_back(
+            {stepper, std::to_string(rows.size()), significant(median(medians), 2),
+             middle_and_worst(p95), middle_and_worst(longest),
+             std::to_string(std::count_if(longest.begin(), longest.end(),
+                                          [](double value) { return value > 3.0; }))});
     }
     return table;
 }

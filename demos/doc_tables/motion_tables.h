@@ -8,6 +8,8 @@ namespace cloth {
 MarkdownTable hard_cases_table(const std::vector<DataFile>& files);
 /// @param files  with limbs, and as one surface
 MarkdownTable motions_table(const std::vector<DataFile>& files);
+/// How evenly time is spent, clip by clip.
+MarkdownTable clip_times_table(const std::vector<DataFile>& files);
 
 /// Reports of `bullet_scenes`: scenes of our own, and those of Bullet's demos.
 MarkdownTable bullet_scenes_table(const std::vector<DataFile>& files);

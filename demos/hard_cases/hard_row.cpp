@@ -57,6 +57,11 @@ HardRow make_row(const HardCase& hard, const std::string& stepper, const HardRun
     row.first_failed_frame = run.first_failed_frame;
     row.failure = run.failure;
     row.ms_median = median(run.ms);
+    if (run.ms.size() > 1) {
+        const std::vector<double> later(run.ms.begin() + 1, run.ms.end());
+        row.ms_p95 = quantile(later, 0.95);
+        row.ms_longest = highest(later);
+    }
     row.frames = run.frames;
     return row;
 }
@@ -94,6 +99,8 @@ ordered_json to_json(const HardRow& row) {
         row.first_failed_frame ? ordered_json(*row.first_failed_frame) : ordered_json();
     json["failure"] = row.failure.empty() ? ordered_json() : ordered_json(row.failure);
     json["ms_median"] = rounded(row.ms_median);
+    json["ms_p95"] = rounded(row.ms_p95);
+    json["ms_longest"] = rounded(row.ms_longest);
     json["frames"] = row.frames;
     json["frames_wanted"] = row.frames_wanted;
     return json;
@@ -117,6 +124,8 @@ HardRow row_from_json(const ordered_json& json) {
         row.first_failed_frame = json.at("first_failed_frame").get<int>();
     if (!json.at("failure").is_null()) row.failure = json.at("failure").get<std::string>();
     row.ms_median = number(json.at("ms_median"));
+    row.ms_p95 = number(json.at("ms_p95"));
+    row.ms_longest = number(json.at("ms_longest"));
     row.frames = json.at("frames").get<int>();
     row.frames_wanted = json.at("frames_wanted").get<int>();
     return row;

@@ -24,7 +24,9 @@ struct HardRow {
     double rms_speed_max = unknown;
     std::optional<int> first_failed_frame;
     std::string failure;
-    double ms_median = unknown;
+    /// Of a frame's steps, without the animation of obstacles. The first frame, which builds what
+    /// the others use, counts for the median only.
+    double ms_median = unknown, ms_p95 = unknown, ms_longest = unknown;
     int frames = 0;  ///< that it lasted
     int frames_wanted = 0;
 };

@@ -65,12 +65,15 @@ class HardMeter {
     bool step(int frame) {
         const int ticks = ticks_per_frame(m_stepper, m_scene);
         const double dt = m_stepper.fixed_dt() > 0.0 ? m_stepper.fixed_dt() : m_scene.dt();
-        const auto begin = std::chrono::steady_clock::now();
+        std::chrono::duration<double, std::milli> time{};
         bool finite = true;
-        for (int tick = 0; tick < ticks && finite; ++tick)
-            finite = m_stepper.step(boundary(frame, tick, ticks), dt, m_state).finite;
-        const auto time = std::chrono::steady_clock::now() - begin;
-        m_run.ms.push_back(std::chrono::duration<double, std::milli>(time).count());
+        for (int tick = 0; tick < ticks && finite; ++tick) {
+            const Boundary now = boundary(frame, tick, ticks);
+            const auto begin = std::chrono::steady_clock::now();
+            finite = m_stepper.step(now, dt, m_state).finite;
+            time += std::chrono::steady_clock::now() - begin;
+        }
+        m_run.ms.push_back(time.count());
         return finite && m_state.x.allFinite();
     }
 

@@ -117,6 +117,15 @@ IterationLimits StepSolver::enough(const IterationLimits& limits) const {
     return by_newton ? IterationLimits::exactly(std::min(newton_steps, limits.iterations)) : limits;
 }
 
+/// After small steps no more than all of them took: the most of it is done, and converged steps
+/// would stand out by their time alone.
+IterationLimits StepSolver::for_correction(const IterationLimits& limits, double dt) const {
+    IterationLimits few = enough(limits);
+    if (const int count = small_steps(dt); count > 1)
+        few.iterations = std::min(few.iterations, count * m_settings.quasi_newton.iterations);
+    return few;
+}
+
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
     const int count = small_steps(dt);
@@ -191,7 +200,7 @@ StepReport StepSolver::correct(const Boundary& boundary, double dt,
     find_contacts(boundary, m_x, StepEnd::end);
     if (through) through->hold_where_they_went_in(m_contacts, m_x);
     report.times.proximity = watch.lap();
-    if (!run(boundary, dt, nullptr, Start::here, enough(limits), 1, state, report))
+    if (!run(boundary, dt, nullptr, Start::here, for_correction(limits, dt), 1, state, report))
         return StepReport::failed();
     report.times.solve = watch.lap();
     return finish(boundary, dt, state, report);

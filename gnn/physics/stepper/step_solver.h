@@ -181,6 +181,7 @@ class StepSolver {
  private:
     IterationLimits adjusted(IterationLimits limits) const;
     IterationLimits enough(const IterationLimits& limits) const;
+    IterationLimits for_correction(const IterationLimits& limits, double dt) const;
     enum class Start { guess, here };  ///< here: m_x
     StepReport solve(const Boundary& boundary, double dt, StepStart* start,
                      const IterationLimits& limits, int parts, ClothState& state);
