@@ -81,7 +81,7 @@ void ContactHessian::begin_self_contact(const SelfContactEnergy& energy,
         }
         m_self_contacts.push_back(contact);
     }
-    m_edge_pairs.begin_step(energy, row_of.size());
+    if (m_lumps) m_edge_pairs.begin_step(energy, row_of.size());
 }
 
 double ContactHessian::SelfContact::along(const Points& direction) const {

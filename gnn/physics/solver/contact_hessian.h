@@ -27,12 +27,17 @@ namespace cloth {
 ///
 ///     6 w depth c c'         c = (weight n) of the pair's four vertices
 ///
-/// and friction between layers the block of friction, shared out over these four. Pairs of edges
-/// are lumped, see LumpedEdgePairs.
+/// and friction between layers the block of friction, shared out over these four.
 ///
 /// Skinned goals add the blocks of GoalHessian.
 class ContactHessian {
  public:
+    /// lumped: see LumpedEdgePairs; single: a term for each, which costs more and guides no better.
+    enum class EdgePairs { lumped, single };
+
+    explicit ContactHessian(EdgePairs edge_pairs = EdgePairs::lumped)
+        : m_lumps(edge_pairs == EdgePairs::lumped) {}
+
     /// Takes the contacts and sliders of this step. @param row_of  |V|: free row, -1 for a pin
     void begin_step(const IncrementalPotential& potential, const std::vector<int>& row_of);
 
@@ -131,6 +136,7 @@ class ContactHessian {
     std::vector<Slider> m_sliders;
     std::vector<size_t> m_slider_index;        ///< of the potential's friction().sliders()
     std::vector<SelfContact> m_self_contacts;  ///< the potential's self_contact().pairs()
+    bool m_lumps;
     LumpedEdgePairs m_edge_pairs;
     std::vector<Block> m_blocks;
     bool m_anticipated = false;

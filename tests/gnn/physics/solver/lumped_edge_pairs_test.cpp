@@ -10,6 +10,7 @@
 #include "data/core/garment_pieces.h"
 #include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/solver/contact_hessian.h"
+#include "gnn/physics/solver/quasi_newton.h"
 #include "gnn/physics/solver/quasi_newton_matrix.h"
 #include "tests/gnn/physics/stepper/self_contact_scenes.h"
 
@@ -156,6 +157,38 @@ TEST(ContactHessian, HoldsLayersAsAWholeAsTheirPairsDo) {
     size_t couplings = 0;
     contacts.for_each_coupling([&](const ContactHessian::Coupling&) { ++couplings; });
     EXPECT_LT(couplings, with.self_contact().pairs().size() / 2);
+}
+
+/// The energy that one direction gains when layers are pressed into each other.
+double gain_of_a_step(const Layers& layers, ContactHessian::EdgePairs edge_pairs) {
+    IncrementalPotential potential(layers.garment, with_layers(thickness, 0.5));
+    SurfaceContacts none;
+    Boundary boundary;
+    boundary.pin_targets.resize(0, 3);
+    Proximity().query(layers.state.x, boundary, none);
+    potential.begin_step(layers.state, boundary, none, dt);
+    Points x = layers.state.x, gradient, right_side, step;
+    const std::vector<int> piece = garment_pieces(layers.garment);
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+        if (piece[static_cast<size_t>(i)] == 1) x(i, 1) -= 1e-3 * (1.0 + std::sin(40.0 * x(i, 0)));
+    const double before = potential.value_gradient(x, gradient);
+
+    QuasiNewtonMatrix matrix(layers.garment);
+    EXPECT_TRUE(matrix.prepare(layers.garment, dt));
+    ContactHessian contacts(edge_pairs);
+    contacts.begin_step(potential, matrix.row_of());
+    contacts.linearise(potential, x);
+    matrix.gather(Points(-gradient), right_side);
+    matrix.solve(right_side, contacts, QuasiNewtonSettings().contact_cg_iterations, step);
+    matrix.add_scaled(1.0, step, x);
+    return before - potential.value(x);
+}
+
+TEST(ContactHessian, LumpedPairsGuideAsWellAsSingleOnes) {
+    const Layers layers;
+    const double single = gain_of_a_step(layers, ContactHessian::EdgePairs::single);
+    ASSERT_GT(single, 0.0);
+    EXPECT_GT(gain_of_a_step(layers, ContactHessian::EdgePairs::lumped), 0.95 * single);
 }
 
 }  // namespace
