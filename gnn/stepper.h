@@ -47,6 +47,7 @@ struct StepReport {
     /// How thick the thinnest obstacle is that the garment went through on the way (m), see
     /// TunnellingDetector; none: nothing was found, or it was not searched for.
     std::optional<double> tunnelled;
+    int points_tunnelled = 0;  ///< vertices, edge midpoints and face centres that went through one
     int vertices_in_ignored_limbs = 0;  ///< vertices inside a limb that they ignore, see
                                         ///< LimbOverlap; max_penetration does not count them
     double max_ignored_depth = 0.0;     ///< how deep the deepest of them is inside (m)

@@ -100,6 +100,8 @@ TunnellingDetector::TunnellingDetector(const Garment& garment, std::shared_ptr<O
       m_owns_trees(!trees),
       m_trees(trees ? std::move(trees) : std::make_shared<ObstacleTrees>(own_trees)),
       m_proximity({}, m_trees) {
+    for (int i = 0; i < garment.vertex_count(); ++i)
+        if (!m_pinned[static_cast<size_t>(i)]) m_vertices.push_back(i);
     m_proximity.query(garment.rest().vertices, Boundary(),
                       m_contacts);  // gives the rows their size
 }
@@ -183,18 +185,19 @@ void TunnellingDetector::report(const Crossing& crossing, const Boundary& bounda
 }
 
 void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0,
-                                      const Points& x1, int threads) {
+                                      const Points& x1, const std::vector<int>& vertices,
+                                      int threads) {
     const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
     const std::shared_ptr<const MotionTree> tree =
         (boundary.trees ? *boundary.trees : *m_trees).motion(mesh);
     if (!tree) return;
-    const int count = static_cast<int>(x0.rows());
+    const int count = static_cast<int>(vertices.size());
     const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
     const auto find_part = [&](int part, std::vector<Crossing>& out) {
         std::vector<int> stack;
         const int end = std::min(count, (part + 1) * points_per_part);
-        for (int i = part * points_per_part; i < end; ++i) {
-            if (m_pinned[static_cast<size_t>(i)]) continue;
+        for (int k = part * points_per_part; k < end; ++k) {
+            const int i = vertices[static_cast<size_t>(k)];
             if ((ignored_limbs(boundary, i) & mesh.solid) != 0) continue;
             const LimbSet ignored = limbs ? ignored_limbs(boundary, i) : 0;
             Crossing crossing = cross(mesh, *tree, x0.row(i), x1.row(i), ignored, stack);
@@ -211,7 +214,7 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
 }
 
 void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
-                                           const Points& x1) {
+                                           const Points& x1, const std::vector<int>& vertices) {
     const Obstacle& shape = boundary.obstacles[static_cast<size_t>(obstacle)];
     if (!is_usable_primitive(shape)) return;
     const Pose to_local0 = shape.pose0.inverse(), to_local1 = shape.pose1.inverse();
@@ -228,9 +231,8 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
         report(crossing, boundary, obstacle, nullptr);
     };
     const int count = static_cast<int>(x0.rows());
-    for (int i = 0; i < count; ++i)
-        if (!m_pinned[static_cast<size_t>(i)] && (ignored_limbs(boundary, i) & shape.solid) == 0)
-            follow(i, x0.row(i), x1.row(i));
+    for (const int i : vertices)
+        if ((ignored_limbs(boundary, i) & shape.solid) == 0) follow(i, x0.row(i), x1.row(i));
     for (int sample = 0; sample < m_samples.count(); ++sample) {
         const SurfaceSamples::Corners corners = m_samples.corners(sample);
         LimbSet ignored = 0;
@@ -240,11 +242,21 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
     }
 }
 
+/// Moves the vertices of a sample until it is so far outside of where it went in.
+void TunnellingDetector::lift_corners(const Tunnelling& through, double clearance,
+                                      Points& x) const {
+    const CarriedPoint& in = through.in;
+    const SurfaceSamples::Corners corners =
+        m_samples.corners(through.point - static_cast<int>(x.rows()));
+    const double depth = clearance + in.normal1.dot(in.point1 - corners.position(x));
+    if (!(depth > 0.0)) return;
+    for (int k = 0; k < corners.count(); ++k) {
+        const int vertex = corners.vertex[static_cast<size_t>(k)];
+        if (!m_pinned[static_cast<size_t>(vertex)]) x.row(vertex) += depth * in.normal1.transpose();
+    }
+}
+
 void TunnellingDetector::hold_where_they_went_in(SurfaceContacts& contacts, Points& x) const {
-    const auto lift = [&](int vertex, double depth, const Vec3& normal) {
-        if (depth > 0.0 && !m_pinned[static_cast<size_t>(vertex)])
-            x.row(vertex) += depth * normal.transpose();
-    };
     const int count = static_cast<int>(x.rows());
     for (const Tunnelling& through : m_found) {
         const CarriedPoint& in = through.in;
@@ -259,31 +271,94 @@ void TunnellingDetector::hold_where_they_went_in(SurfaceContacts& contacts, Poin
             contacts.normal0.row(i) = in.normal0;
             contacts.normal1.row(i) = in.normal1;
             contacts.distance[i] = 0.0;
-            lift(i, height - x.row(i).dot(in.normal1), in.normal1);
+            const double depth = height - x.row(i).dot(in.normal1);
+            if (depth > 0.0) x.row(i) += depth * in.normal1.transpose();
             continue;
         }
         const SurfaceSamples::OnFace on = m_samples.on_face(through.point - count);
         contacts.ridges.push_back(
             {on.face, on.weight, in.normal1, height, in.normal0, in.point0, in.point1});
-        const SurfaceSamples::Corners corners = m_samples.corners(through.point - count);
-        const double depth = height - corners.position(x).dot(in.normal1);
-        for (int k = 0; k < corners.count(); ++k)
-            lift(corners.vertex[static_cast<size_t>(k)], depth, in.normal1);
+        lift_corners(through, 0.0, x);
     }
+}
+
+/// Vertices, also those of samples, that take_back() moves; ascending.
+std::vector<int> TunnellingDetector::vertices_of_found() const {
+    const int count = static_cast<int>(m_pinned.size());
+    std::vector<int> vertices;
+    const auto add = [&](int vertex) {
+        if (!m_pinned[static_cast<size_t>(vertex)]) vertices.push_back(vertex);
+    };
+    for (const Tunnelling& through : m_found) {
+        if (through.point < count) {
+            add(through.point);
+            continue;
+        }
+        const SurfaceSamples::Corners corners = m_samples.corners(through.point - count);
+        for (int k = 0; k < corners.count(); ++k) add(corners.vertex[static_cast<size_t>(k)]);
+    }
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+}
+
+std::vector<int> TunnellingDetector::inside(const Boundary& boundary,
+                                            const std::vector<int>& vertices, const Points& x) {
+    m_proximity.query_rows(x, vertices, boundary, m_contacts, StepEnd::end);
+    std::vector<int> inside;
+    for (const int i : vertices)
+        if (m_contacts.has(i) && m_contacts.distance[i] < 0.0) inside.push_back(i);
+    return inside;
+}
+
+double TunnellingDetector::take_back(const Boundary& boundary, const Points& x0, double clearance,
+                                     int threads, Points& x) {
+    if (m_found.empty()) return 0.0;
+    const std::vector<int> vertices = vertices_of_found();
+    std::map<int, Vec3> from;
+    for (const int vertex : vertices) from[vertex] = x.row(vertex);
+    const auto put_back = [&](const std::vector<int>& rows) {
+        for (const int row : rows)
+            if (const auto place = from.find(row); place != from.end())
+                x.row(row) = place->second.transpose();
+    };
+    for (const Tunnelling& through : m_found) {
+        const CarriedPoint& in = through.in;
+        if (through.point < x.rows())
+            x.row(through.point) = (in.point1 + clearance * in.normal1).transpose();
+        else
+            lift_corners(through, clearance, x);
+    }
+    put_back(inside(boundary, vertices, x));
+    search(boundary, x0, x, vertices, threads);
+    if (!m_found.empty()) {
+        put_back(vertices_of_found());
+        search(boundary, x0, x, m_vertices, threads);
+    }
+    m_moved.assign(m_pinned.size(), 0);
+    for (const auto& [vertex, place] : from)
+        m_moved[static_cast<size_t>(vertex)] = x.row(vertex) != place.transpose();
+    return m_samples.depth_beside(m_proximity, boundary, x, m_moved);
 }
 
 const std::vector<Tunnelling>& TunnellingDetector::find(const Boundary& boundary, const Points& x0,
                                                         const Points& x1, int threads) {
-    m_found.clear();
     if (m_owns_trees) m_trees->begin_step();
+    search(boundary, x0, x1, m_vertices, threads);
+    return m_found;
+}
+
+/// Of these vertices, and of all samples.
+void TunnellingDetector::search(const Boundary& boundary, const Points& x0, const Points& x1,
+                                const std::vector<int>& vertices, int threads) {
+    m_found.clear();
     for (int k = 0; k < static_cast<int>(boundary.obstacles.size()); ++k) {
         const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(k)];
         if (obstacle.shape == ObstacleShape::mesh)
-            find_in_mesh(boundary, k, x0, x1, threads);
+            find_in_mesh(boundary, k, x0, x1, vertices, threads);
         else
-            find_in_primitive(boundary, k, x0, x1);
+            find_in_primitive(boundary, k, x0, x1, vertices);
     }
-    return m_found;
 }
 
 }  // namespace cloth

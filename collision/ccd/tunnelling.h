@@ -69,6 +69,15 @@ class TunnellingDetector {
     /// ridges. `x` (|V| x 3, m, at t + dt) is moved out to these planes; pins are not.
     void hold_where_they_went_in(SurfaceContacts& contacts, Points& x) const;
 
+    /// Moves what was found back to where it went in, `clearance` (m) outside. Points that have no
+    /// room there, because another surface is in the way, or that would still be through something,
+    /// stay where they were; found() has these afterwards.
+    /// @param boundary, x0, threads  as find() had them
+    /// @param x  |V| x 3 (m), the x1 that find() had; changed
+    /// @return   how deep the edge midpoints and face centres beside what moved are then (m), or 0
+    double take_back(const Boundary& boundary, const Points& x0, double clearance, int threads,
+                     Points& x);
+
     /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
     /// as thick as the longest way through it; none: nothing was gone through.
     std::optional<double> thinnest() const;
@@ -76,21 +85,29 @@ class TunnellingDetector {
  private:
     struct Crossing;
 
+    void search(const Boundary& boundary, const Points& x0, const Points& x1,
+                const std::vector<int>& vertices, int threads);
     void find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
-                           const Points& x1);
+                           const Points& x1, const std::vector<int>& vertices);
     void find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0, const Points& x1,
-                      int threads);
+                      const std::vector<int>& vertices, int threads);
     static Crossing cross(const Obstacle& mesh, const MotionTree& tree, const Vec3& p0,
                           const Vec3& p1, LimbSet ignored, std::vector<int>& stack);
     void complete(const Boundary& boundary, int obstacle, const Points& x, StepEnd end);
     void report(const Crossing& crossing, const Boundary& boundary, int obstacle,
                 const std::vector<std::uint8_t>* limbs);
+    void lift_corners(const Tunnelling& through, double clearance, Points& x) const;
+    std::vector<int> vertices_of_found() const;
+    std::vector<int> inside(const Boundary& boundary, const std::vector<int>& vertices,
+                            const Points& x);
 
     SurfaceSamples m_samples;
-    std::vector<char> m_pinned;  ///< |V|
+    std::vector<char> m_pinned;   ///< |V|
+    std::vector<int> m_vertices;  ///< those that are not
     std::vector<Crossing> m_crossings;
     std::vector<std::vector<Crossing>> m_parts;
     std::vector<int> m_rows;
+    std::vector<char> m_moved;               ///< |V|: by take_back()
     bool m_owns_trees;                       ///< whether they are of this object alone
     std::shared_ptr<ObstacleTrees> m_trees;  ///< used where Boundary::trees is null
     Proximity m_proximity;

@@ -124,11 +124,18 @@ double SurfaceSamples::vouched_by_faces(int edge) const {
 }
 
 /// How far a sample is searched for, and what it passes over.
-void SurfaceSamples::limit_search(int sample, const Boundary& boundary) {
+void SurfaceSamples::limit_search(int sample, const Boundary& boundary, double radius) {
     LimbSet ignored = 0;
     for (const int vertex : corners(sample).vertex) ignored |= ignored_limbs(boundary, vertex);
     m_ignored[static_cast<size_t>(sample)] = ignored;
-    m_radii[sample] = beyond_doubt - m_distance[sample];
+    m_radii[sample] = radius;
+}
+
+void SurfaceSamples::query_rows(Proximity& proximity, const Boundary& boundary) {
+    QueryLimits limits;
+    limits.ignored = &m_ignored;
+    limits.radii = &m_radii;
+    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
 }
 
 /// Searches for the nearest points of samples that may be deep.
@@ -137,14 +144,27 @@ void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundar
                                    int last, const IsUnsure& is_unsure) {
     select_rows(first, last, worth_threads, m_unsure, m_rows, [&](int sample) {
         const bool unsure = is_unsure(sample);
-        if (unsure) limit_search(sample, boundary);
+        if (unsure) limit_search(sample, boundary, beyond_doubt - m_distance[sample]);
         return unsure;
     });
-    QueryLimits limits;
-    limits.ignored = &m_ignored;
-    limits.radii = &m_radii;
-    proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
+    query_rows(proximity, boundary);
     for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
+}
+
+double SurfaceSamples::depth_beside(Proximity& proximity, const Boundary& boundary, const Points& x,
+                                    const std::vector<char>& changed) {
+    m_rows.clear();
+    for (int sample = 0; sample < count(); ++sample) {
+        if (!has_changed(sample, &changed)) continue;
+        m_x.row(sample) = corners(sample).position(x);
+        limit_search(sample, boundary, proximity.settings().radius);
+        m_rows.push_back(sample);
+    }
+    query_rows(proximity, boundary);
+    double depth = 0.0;
+    for (const int sample : m_rows)
+        if (m_contacts.has(sample)) depth = std::max(depth, -m_contacts.distance[sample]);
+    return depth;
 }
 
 void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,

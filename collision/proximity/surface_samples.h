@@ -40,6 +40,13 @@ class SurfaceSamples {
     void find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,
                    const SurfaceContacts& contacts, double depth, const std::vector<char>* changed);
 
+    /// How deep the samples of some vertices are at t + dt (m): the deepest of those that are
+    /// movable; 0: none is inside. Leaves deep() as it is, and positions and contacts of these
+    /// samples new.
+    /// @param changed  |V|: these vertices
+    double depth_beside(Proximity& proximity, const Boundary& boundary, const Points& x,
+                        const std::vector<char>& changed);
+
     int count() const { return static_cast<int>(m_x.rows()); }
     /// Whether not all of its vertices are pinned.
     bool is_movable(int sample) const { return m_movable[static_cast<size_t>(sample)] != 0; }
@@ -62,7 +69,8 @@ class SurfaceSamples {
     template <class IsUnsure>
     void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last,
                        const IsUnsure& is_unsure);
-    void limit_search(int sample, const Boundary& boundary);
+    void limit_search(int sample, const Boundary& boundary, double radius);
+    void query_rows(Proximity& proximity, const Boundary& boundary);
     bool has_changed(int sample, const std::vector<char>* changed) const;
     bool skins_part(int sample, const SurfaceContacts& contacts) const;
     double vouched_by_vertices(int sample, const Points& x, const VectorX& clearance) const;

@@ -33,6 +33,7 @@ void add(const StepReport& part, StepReport& report) {
     report.max_entry = std::max(report.max_entry, part.max_entry);
     if (part.tunnelled)
         report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
+    report.points_tunnelled = std::max(report.points_tunnelled, part.points_tunnelled);
     report.vertices_beyond_goals = part.vertices_beyond_goals;
     report.max_goal_excess = part.max_goal_excess;
     report.tangles = part.tangles;
@@ -189,7 +190,7 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     StepReport report = small_steps > 1   ? take_small_steps(small_steps, boundary, dt, state)
                         : is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                           : m_solver->part(boundary, dt, m_guard.iterations, state);
-    if (search_it && report.finite) search(boundary, m_start.x, state.x, report);
+    if (search_it && report.finite) search(boundary, dt, state, report);
     if (should_search && !search_it) {
         report.out_of_time = true;
         m_search_ms *= 0.9;  // the next ones may be cheaper
@@ -293,7 +294,7 @@ StepReport ClothStepper::take_part(const Boundary& part, double dt, const Iterat
     const bool search_it = motion > m_guard.watch_motion;
     if (is_watched()) m_start = m_state;
     StepReport report = m_solver->part(part, dt, limits, m_state);
-    if (search_it && report.finite) search(part, m_start.x, m_state.x, report);
+    if (search_it && report.finite) search(part, dt, m_state, report);
     if (is_watched() && !m_deadline.is_set() && corrections == Corrections::allowed)
         correct(part, dt, limits, search_it, m_state, report);
     return report;
@@ -308,10 +309,11 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     StepReport corrected = m_solver->correct(boundary, dt, report.tunnelled ? &m_detector : nullptr,
                                              limits, m_corrected);
     if (!corrected.finite) return;
-    if (searched) search(boundary, m_start.x, m_corrected.x, corrected);
+    if (searched) search(boundary, dt, m_corrected, corrected);
     report.times += corrected.times;
     report.iterations += corrected.iterations;
-    if (corrected.tunnelled ||
+    if (!are_few(corrected.points_tunnelled) ||
+        corrected.points_tunnelled > report.points_tunnelled ||
         corrected.max_entry > std::max(report.max_entry, m_guard.max_entry) ||
         corrected.max_penetration > std::max(report.max_penetration, kVisible))
         return;
@@ -324,17 +326,38 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     m_next_lag.x = state.x;  // that of the parts that were corrected, if there were any
 }
 
-void ClothStepper::search(const Boundary& boundary, const Points& x0, const Points& x1,
+/// Looks for what a step from m_start went through. Where that are few points they are moved back
+/// to where they went in, which costs next to nothing.
+void ClothStepper::search(const Boundary& boundary, double dt, ClothState& state,
                           StepReport& report) {
     if (m_deadline.left() < m_search_ms) {
         report.out_of_time = true;
         return;
     }
     Stopwatch watch;
-    m_detector.find(boundary, x0, x1, 0);
+    const auto count = static_cast<int>(m_detector.find(boundary, m_start.x, state.x, 0).size());
+    if (count > 0 && are_few(count)) take_back(boundary, dt, state, report);
     report.tunnelled = m_detector.thinnest();
+    report.points_tunnelled = static_cast<int>(m_detector.found().size());
     m_search_ms = watch.lap();
     report.times.contact += m_search_ms;
+}
+
+void ClothStepper::take_back(const Boundary& boundary, double dt, ClothState& state,
+                             StepReport& report) {
+    m_searched = state.x;
+    const double depth =
+        m_detector.take_back(boundary, m_start.x, m_solver->settings().safety_distance, 0, state.x);
+    report.max_penetration = std::max(report.max_penetration, depth);
+    for (Eigen::Index i = 0; i < state.x.rows(); ++i)
+        if (state.x.row(i) != m_searched.row(i))
+            state.v.row(i) = (state.x.row(i) - m_start.x.row(i)) / dt;
+    if (same_points(m_next_lag.x, m_searched)) m_next_lag.x = state.x;
+}
+
+/// Of points that went through something: no step is taken again for them.
+bool ClothStepper::are_few(int points) const {
+    return points <= std::max<Eigen::Index>(1, m_garment->vertex_count() / 100);
 }
 
 /// How finely a step of this motion should have been taken.
@@ -342,7 +365,7 @@ int ClothStepper::substeps_after(const StepReport& report, double motion) const 
     int substeps = report.finite ? 1 : 2;
     if (report.max_entry > m_guard.max_entry)
         substeps = std::max(substeps, substeps_for(motion, m_guard.fine_motion));
-    if (report.tunnelled)
+    if (!are_few(report.points_tunnelled))
         substeps = std::max(substeps, substeps_for(motion, std::min(m_guard.tunnelling_motion,
                                                                     0.5 * *report.tunnelled)));
     return substeps;

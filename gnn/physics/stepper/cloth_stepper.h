@@ -13,9 +13,12 @@ namespace cloth {
 
 /// When a step is corrected, and when it is cut into parts.
 ///
-/// A step that went past a surface, or through a solid, is taken on from where it ended, with the
-/// contacts that hold it there. That costs about half a step more. If it still went through, it is
-/// taken again in parts, which are not corrected.
+/// Where a few points of the garment went through a solid, they are moved back to where they went
+/// in. A step that went past a surface, or of which more went through, or of which some have no
+/// room where they went in, is taken on from where it ended, with the contacts that hold it there.
+/// That costs about half a step more. If more than a few points still went through, it is taken
+/// again in parts, which are not corrected; a few, such as in a fold of skin that closes on them,
+/// stay, and are reported.
 struct GuardSettings {
     bool limbs = true;  ///< limbs of a body that pass through each other are told apart, see
                         ///< LimbOverlap
@@ -25,8 +28,8 @@ struct GuardSettings {
     double max_motion = 0.1;
     /// Steps that leave a vertex deeper inside an obstacle than this (m, before contact projection)
     /// went past a surface, 1e-3 to 0.1. Their sub-steps are of `fine_motion`.
-    double max_entry = 0.01;
-    double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
+    double max_entry = 0.02;
+    double fine_motion = 0.1;  ///< motion in such a sub-step at most (m), 0.01 to 1
     /// Steps of more motion than this (m, 5e-3 to 1) are searched for solids that the garment went
     /// through on the way, see TunnellingDetector. Their sub-steps are of `tunnelling_motion`, or
     /// of half as much motion as the solid is thick: in these the nearest surface is the one that
@@ -34,7 +37,7 @@ struct GuardSettings {
     double watch_motion = 0.02;
     double tunnelling_motion = 0.01;  ///< (m), 1e-3 to 1
     int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
-    IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part
+    IterationLimits iterations = IterationLimits::controlled(5, 16);  ///< of a part
 
     /// No step is cut.
     static GuardSettings limbs_alone() {
@@ -166,7 +169,9 @@ class ClothStepper : public Stepper {
                          Corrections corrections);
     void correct(const Boundary& boundary, double dt, const IterationLimits& limits, bool searched,
                  ClothState& state, StepReport& report);
-    void search(const Boundary& boundary, const Points& x0, const Points& x1, StepReport& report);
+    void search(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
+    void take_back(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
+    bool are_few(int points) const;
     bool went_past(const StepReport& report) const {
         return report.tunnelled || report.max_entry > m_guard.max_entry;
     }
@@ -186,6 +191,7 @@ class ClothStepper : public Stepper {
     ClothState m_state;   ///< during a step of parts
     ClothState m_start;   ///< of a step, or part of one, that may be corrected
     ClothState m_corrected;
+    Points m_searched;  ///< |V| x 3 (m)
     /// At the end of the last step, where it began, and at the end of the one that is being taken:
     /// a step may be taken again from where it began.
     Lag m_lag, m_lag_before, m_next_lag;

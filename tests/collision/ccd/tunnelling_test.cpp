@@ -204,6 +204,46 @@ TEST(Tunnelling, AreHeldOnTheSideThatTheyCameFrom) {
     }
 }
 
+TEST(Tunnelling, AreTakenBackToWhereTheyWentIn) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const Pose from = pose_of({0, -0.03, 0}), to = pose_of({0, 0.04, 0}, 0.1);
+    for (const Obstacle& plate :
+         {moving(scaled(cube(), {0.3, 0.01, 0.3}), from, to),
+          moving(primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0), from, to)}) {
+        const Boundary boundary = boundary_of({plate});
+        TunnellingDetector detector(garment);
+        const std::vector<Tunnelling> found = detector.find(boundary, x, x, 0);
+        ASSERT_GT(vertices_of(found, x.rows()).size(), 100u);
+        Points back = x;
+        const double depth = detector.take_back(boundary, x, 5e-4, 0, back);
+        const auto is_amid = [&](int i) { return x.row(i).cwiseAbs().maxCoeff() < 0.22; };
+        for (const int i : vertices_of(detector.found(), x.rows()))
+            EXPECT_FALSE(is_amid(i)) << "vertex " << i << " is still through";
+        TunnellingDetector other(garment);
+        other.find(boundary, x, back, 0);
+        EXPECT_EQ(other.found().size(), detector.found().size());
+        VectorX distance;
+        Proximity().signed_distance(back, boundary, StepEnd::end, distance);
+        for (const Tunnelling& solid : found) {
+            if (solid.point >= x.rows() || !is_amid(solid.point)) continue;
+            EXPECT_GT(distance[solid.point], 4e-4);
+            EXPECT_LT((to.inverse() * Vec3(back.row(solid.point))).y(), 0.0106);
+        }
+        double deepest = 0.0;
+        for (const auto& edge : garment.edges()) {
+            if (back.row(edge[0]) == x.row(edge[0]) && back.row(edge[1]) == x.row(edge[1]))
+                continue;
+            VectorX at_middle;
+            Proximity().signed_distance(0.5 * (back.row(edge[0]) + back.row(edge[1])), boundary,
+                                        StepEnd::end, at_middle);
+            deepest = std::max(deepest, -at_middle[0]);
+        }
+        EXPECT_GT(deepest, 1e-3) << "the scene says nothing of edges";
+        EXPECT_GE(depth, deepest - 1e-9);
+    }
+}
+
 TEST(Tunnelling, BetweenVerticesAreHeldByContactsOfTheirOwn) {
     const Garment garment = sheet();
     const Points& x = garment.rest().vertices;

@@ -84,6 +84,13 @@ Obstacle ball(double from, double to) {
 
 class Guard : public ::testing::Test {
  protected:
+    /// What went past a surface is cut more finely than fast motion is.
+    static GuardSettings fine() {
+        GuardSettings settings;
+        settings.max_entry = 0.01;
+        settings.fine_motion = 0.04;
+        return settings;
+    }
     /// A sheet in the plane x = 0.
     static TriMesh upright() {
         TriMesh mesh = make_sheet(0.8, 0.8, 600);
@@ -213,7 +220,7 @@ TEST_F(Guard, AFailedStepIsMadeInParts) {
 
 TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
     m_boundary.obstacles = {ball(-0.2, -0.13)};  // 7 cm: not too fast by itself
-    ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, 0.02));
+    ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, 0.02), fine());
     ClothState by_hand = m_state;
     const StepReport report = stepper.step(m_boundary, dt, m_state);
     ASSERT_TRUE(report.finite);
@@ -231,7 +238,7 @@ TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheSolversAffair) {
     const auto expect_inner = [&](double entry, double motion) {
         m_boundary.obstacles = {ball(-0.2, -0.2 + motion)};
         ClothState state = m_state;
-        ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, entry));
+        ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, entry), fine());
         EXPECT_EQ(stepper.step(m_boundary, dt, state).substeps, 1);
         EXPECT_EQ(state.x, moved);
     };
@@ -330,6 +337,69 @@ TEST_P(Through, WithoutSubstepsNothingIsWatched) {
     EXPECT_EQ(report.substeps, 1);
 }
 
+/// A bar thinner than vertices are apart, which moves as the plate does and passes one of them.
+class ThroughFew : public Through {
+ protected:
+    ThroughFew() {
+        for (Eigen::Index i = 0; i < m_state.x.rows(); ++i)
+            if (m_state.x.row(i).norm() < m_state.x.row(m_vertex).norm()) m_vertex = i;
+        m_bar = at_vertex(plate(-0.03, 0.029), 0.015);
+        place(m_bar);
+    }
+    Obstacle at_vertex(Obstacle box, double half_length) const {
+        box.half_extents = Vec3(half_length, 0.012, 0.012);
+        for (Pose* pose : {&box.pose0, &box.pose1}) {
+            pose->translation().y() = m_state.x(m_vertex, 1);
+            pose->translation().z() = m_state.x(m_vertex, 2);
+        }
+        return box;
+    }
+    StepReport fly() {
+        ClothStepper stepper(m_garment, std::make_unique<Flying>(m_garment, m_way));
+        return stepper.step(m_boundary, dt, m_state);
+    }
+    Eigen::Index m_vertex = 0;
+    Obstacle m_bar;
+    const Vec3 m_way = Vec3(0.005, 0, 0);
+    const ClothState m_before = m_state;
+};
+
+TEST_P(ThroughFew, PointsAreMovedBackToWhereTheyWentIn) {
+    TunnellingDetector detector(m_garment);
+    const Points through = m_state.x.rowwise() + m_way.transpose();
+    const auto found = static_cast<int>(detector.find(m_boundary, m_state.x, through, 0).size());
+    ASSERT_GT(found, 0);
+    ASSERT_LE(found, m_garment.vertex_count() / 100) << "not few";
+    const StepReport report = fly();
+    EXPECT_EQ(report.substeps, 1);
+    EXPECT_EQ(report.iterations, 0) << "nothing was solved again";
+    EXPECT_FALSE(report.tunnelled);
+    EXPECT_EQ(report.points_tunnelled, 0);
+    EXPECT_TRUE(detector.find(m_boundary, m_before.x, m_state.x, 0).empty());
+    EXPECT_NEAR(m_state.x(m_vertex, 0), 0.029 + 0.015 + StepSettings().safety_distance, 1e-9);
+    for (Eigen::Index i = 0; i < m_state.x.rows(); ++i) {
+        const Vec3 step = m_state.x.row(i) - m_before.x.row(i);
+        if ((step - m_way).norm() > 1e-12) {
+            EXPECT_LT((m_state.v.row(i).transpose() - step / dt).norm(), 1e-9);
+            EXPECT_LT((m_before.x.row(i) - m_before.x.row(m_vertex)).norm(), 0.06);
+        }
+    }
+}
+
+TEST_P(ThroughFew, PointsWithoutRoomWhereTheyWentInStayAndAreReported) {
+    const Obstacle wall = at_vertex(plate(0.15, 0.07), 0.05);  // comes to lie over the bar's front
+    m_boundary.obstacles.push_back(GetParam() ? as_mesh(wall) : wall);
+    const Points flown = m_state.x.rowwise() + m_way.transpose();
+    const StepReport report = fly();
+    EXPECT_EQ(report.substeps, 1);
+    ASSERT_TRUE(report.tunnelled);
+    EXPECT_NEAR(*report.tunnelled, 0.03, 1e-5);
+    EXPECT_GT(report.points_tunnelled, 0);
+    EXPECT_EQ(m_state.x, flown);
+}
+
+INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, ThroughFew, ::testing::Bool(),
+                         [](const auto& scene) { return scene.param ? "mesh" : "box"; });
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
                          [](const auto& scene) { return scene.param ? "mesh" : "box"; });
 
@@ -386,7 +456,7 @@ TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
     const Points moved = m_state.x.array() + 1.0;
     auto solver = std::make_unique<Entering>(m_garment, 0.02);
     solver->parts_fail = true;
-    ClothStepper stepper(m_garment, std::move(solver));
+    ClothStepper stepper(m_garment, std::move(solver), fine());
     const StepReport report = stepper.step(m_boundary, dt, m_state);
     EXPECT_TRUE(report.finite);
     EXPECT_EQ(report.substeps, 1);
