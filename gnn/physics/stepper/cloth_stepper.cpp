@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "data/core/check_range.h"
+#include "data/core/skin_goals.h"
 #include "gnn/physics/stepper/guess.h"
 #include "gnn/physics/stepper/relative_motion.h"
 #include "gnn/physics/stepper/stopwatch.h"
@@ -43,6 +45,18 @@ void add(const StepReport& part, StepReport& report) {
 
 constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
 constexpr double kOfLimit = 0.93;  // that is planned with: what contact takes varies
+
+/// Whether a vertex that moved is farther beyond the limits of its goal than it was.
+bool goes_beyond_goals(const Garment& garment, const SkinGoals& goals, const Points& before,
+                       const Points& after) {
+    if (!garment.has_goals()) return false;
+    std::vector<VertexGoal> limited;
+    take_goals(garment.goal_limits(), goals, garment.is_pinned(), 1.0, limited);
+    return std::any_of(limited.begin(), limited.end(), [&](const VertexGoal& goal) {
+        const Vec3 from = before.row(goal.vertex), to = after.row(goal.vertex);
+        return from != to && goal.excess(to) > goal.excess(from);
+    });
+}
 
 /// What a part like this takes (ms) with as many iterations as it needs to be worth its while:
 /// cloth that is cut into parts of one or two tears, and is farther off than in one step of as
@@ -343,11 +357,17 @@ void ClothStepper::search(const Boundary& boundary, double dt, ClothState& state
     report.times.contact += m_search_ms;
 }
 
+/// All of them, or none where goals do not allow it.
 void ClothStepper::take_back(const Boundary& boundary, double dt, ClothState& state,
                              StepReport& report) {
     m_searched = state.x;
     const double depth =
         m_detector.take_back(boundary, m_start.x, m_solver->settings().safety_distance, 0, state.x);
+    if (goes_beyond_goals(*m_garment, boundary.goals, m_searched, state.x)) {
+        state.x = m_searched;
+        m_detector.find(boundary, m_start.x, state.x, 0);
+        return;
+    }
     report.max_penetration = std::max(report.max_penetration, depth);
     for (Eigen::Index i = 0; i < state.x.rows(); ++i)
         if (state.x.row(i) != m_searched.row(i))

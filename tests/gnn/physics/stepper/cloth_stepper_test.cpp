@@ -398,6 +398,23 @@ TEST_P(ThroughFew, PointsWithoutRoomWhereTheyWentInStayAndAreReported) {
     EXPECT_EQ(m_state.x, flown);
 }
 
+TEST_P(ThroughFew, PointsStayWhereGoalsDoNotLetThemBack) {
+    const Points flown = m_state.x.rowwise() + m_way.transpose();
+    m_boundary.goals = SkinGoals::at(flown);
+    for (const double distance : {0.02, 0.05}) {  // they would go back by 4 cm
+        GoalLimits limits;
+        limits.max_distance.setConstant(m_garment.vertex_count(), distance);
+        const Garment held = m_garment.with_goals(limits);
+        ClothStepper stepper(held, std::make_unique<Flying>(held, m_way));
+        ClothState state = m_before;
+        const StepReport report = stepper.step(m_boundary, dt, state);
+        EXPECT_EQ(report.substeps, 1);
+        EXPECT_EQ(report.tunnelled.has_value(), distance < 0.04);
+        EXPECT_EQ(report.points_tunnelled > 0, distance < 0.04);
+        EXPECT_EQ(state.x == flown, distance < 0.04);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, ThroughFew, ::testing::Bool(),
                          [](const auto& scene) { return scene.param ? "mesh" : "box"; });
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
