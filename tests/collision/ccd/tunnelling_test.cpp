@@ -43,6 +43,13 @@ Obstacle moving(Obstacle shape, const Pose& from, const Pose& to) {
     return shape;
 }
 
+/// A plate of 2 cm, as a mesh and as a box.
+std::vector<Obstacle> plates(const Pose& from, const Pose& to) {
+    const Vec3 size(0.3, 0.01, 0.3);
+    return {moving(scaled(cube(), size), from, to),
+            moving(primitive(ObstacleShape::box, size, 0.0), from, to)};
+}
+
 std::set<int> vertices_of(const std::vector<Tunnelling>& found, Eigen::Index count) {
     std::set<int> points;
     for (const Tunnelling& solid : found)
@@ -172,9 +179,7 @@ TEST(Tunnelling, AreHeldOnTheSideThatTheyCameFrom) {
     const Garment garment = sheet();
     const Points& x = garment.rest().vertices;
     const Pose from = pose_of({0, -0.03, 0}), to = pose_of({0, 0.04, 0}, 0.1);
-    for (const Obstacle& plate :
-         {moving(scaled(cube(), {0.3, 0.01, 0.3}), from, to),
-          moving(primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0), from, to)}) {
+    for (const Obstacle& plate : plates(from, to)) {
         const Boundary boundary = boundary_of({plate});
         TunnellingDetector detector(garment);
         const std::set<int> through = vertices_of(detector.find(boundary, x, x, 0), x.rows());
@@ -208,9 +213,7 @@ TEST(Tunnelling, AreTakenBackToWhereTheyWentIn) {
     const Garment garment = sheet();
     const Points& x = garment.rest().vertices;
     const Pose from = pose_of({0, -0.03, 0}), to = pose_of({0, 0.04, 0}, 0.1);
-    for (const Obstacle& plate :
-         {moving(scaled(cube(), {0.3, 0.01, 0.3}), from, to),
-          moving(primitive(ObstacleShape::box, {0.3, 0.01, 0.3}, 0.0), from, to)}) {
+    for (const Obstacle& plate : plates(from, to)) {
         const Boundary boundary = boundary_of({plate});
         TunnellingDetector detector(garment);
         const std::vector<Tunnelling> found = detector.find(boundary, x, x, 0);
