@@ -169,7 +169,7 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
                             ? take_whole(boundary, dt, motion, state)
                             : take_parts(foreseen, boundary, dt, Corrections::allowed, state);
     Lag lag = std::exchange(m_next_lag, {});
-    const int asked = may_repeat ? substeps_after(report, motion) : foreseen;
+    const int asked = may_repeat ? substeps_after(report, dt, motion) : foreseen;
     const int finer = affordable(asked, report.finite ? foreseen : std::min(asked, 2));
     const bool shortened = foreseen < safe || finer < asked;
     if (finer > foreseen) {
@@ -381,9 +381,10 @@ bool ClothStepper::are_few(int points) const {
 }
 
 /// How finely a step of this motion should have been taken.
-int ClothStepper::substeps_after(const StepReport& report, double motion) const {
+int ClothStepper::substeps_after(const StepReport& report, double dt, double motion) const {
     int substeps = report.finite ? 1 : 2;
-    if (report.max_entry > m_guard.max_entry)
+    const bool is_fine = m_substeps == 1 && m_solver->small_steps(dt) > 1;
+    if (report.max_entry > m_guard.max_entry && !is_fine)
         substeps = std::max(substeps, substeps_for(motion, m_guard.fine_motion));
     if (!are_few(report.points_tunnelled))
         substeps = std::max(substeps, substeps_for(motion, std::min(m_guard.tunnelling_motion,

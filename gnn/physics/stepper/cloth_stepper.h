@@ -27,9 +27,10 @@ struct GuardSettings {
     /// proximity's radius: what comes from farther away would pass through.
     double max_motion = 0.1;
     /// Steps that leave a vertex deeper inside an obstacle than this (m, before contact projection)
-    /// went past a surface, 1e-3 to 0.1. Their sub-steps are of `fine_motion`.
+    /// went past a surface, 1e-3 to 0.1. Their sub-steps are of `fine_motion`, but not where steps
+    /// are taken in small ones, which are fine enough.
     double max_entry = 0.02;
-    double fine_motion = 0.1;  ///< motion in such a sub-step at most (m), 0.01 to 1
+    double fine_motion = 0.04;  ///< motion in such a sub-step at most (m), 0.01 to 1
     /// Steps of more motion than this (m, 5e-3 to 1) are searched for solids that the garment went
     /// through on the way, see TunnellingDetector. Their sub-steps are of `tunnelling_motion`, or
     /// of half as much motion as the solid is thick: in these the nearest surface is the one that
@@ -37,7 +38,7 @@ struct GuardSettings {
     double watch_motion = 0.02;
     double tunnelling_motion = 0.01;  ///< (m), 1e-3 to 1
     int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
-    IterationLimits iterations = IterationLimits::controlled(5, 16);  ///< of a part
+    IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part
 
     /// No step is cut.
     static GuardSettings limbs_alone() {
@@ -177,7 +178,7 @@ class ClothStepper : public Stepper {
     }
     bool is_watched() const { return m_guard.max_substeps > 1; }
     int substeps_for(double motion, double most) const;
-    int substeps_after(const StepReport& report, double motion) const;
+    int substeps_after(const StepReport& report, double dt, double motion) const;
 
     const Garment* m_garment;
     GuardSettings m_guard;

@@ -16,7 +16,8 @@ constexpr double dt = 1.0 / 30.0;
 /// Solvers of which the whole step is a stand-in; parts are the real solver's, or fail.
 class Standing : public StepSolver {
  public:
-    explicit Standing(const Garment& garment) : StepSolver(garment, StepSettings::whole()) {}
+    explicit Standing(const Garment& garment, const StepSettings& settings = StepSettings::whole())
+        : StepSolver(garment, settings) {}
     StepReport part(const Boundary& boundary, double h, const IterationLimits& limits,
                     ClothState& state) override {
         return parts_fail ? StepReport::failed() : StepSolver::part(boundary, h, limits, state);
@@ -33,7 +34,9 @@ class Failing : public Standing {
 /// Says how deep it went past a surface.
 class Entering : public Standing {
  public:
-    Entering(const Garment& garment, double entry) : Standing(garment), m_entry(entry) {}
+    Entering(const Garment& garment, double entry,
+             const StepSettings& settings = StepSettings::whole())
+        : Standing(garment, settings), m_entry(entry) {}
     StepReport whole(const Boundary& boundary, double h, ClothState& state) override {
         ignored = boundary.ignored_limbs;
         state.x.array() += 1.0;
@@ -84,11 +87,9 @@ Obstacle ball(double from, double to) {
 
 class Guard : public ::testing::Test {
  protected:
-    /// What went past a surface is cut more finely than fast motion is.
-    static GuardSettings fine() {
+    static GuardSettings entries_of_a_centimetre() {
         GuardSettings settings;
         settings.max_entry = 0.01;
-        settings.fine_motion = 0.04;
         return settings;
     }
     /// A sheet in the plane x = 0.
@@ -220,7 +221,8 @@ TEST_F(Guard, AFailedStepIsMadeInParts) {
 
 TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
     m_boundary.obstacles = {ball(-0.2, -0.13)};  // 7 cm: not too fast by itself
-    ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, 0.02), fine());
+    ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, 0.02),
+                         entries_of_a_centimetre());
     ClothState by_hand = m_state;
     const StepReport report = stepper.step(m_boundary, dt, m_state);
     ASSERT_TRUE(report.finite);
@@ -233,12 +235,23 @@ TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
     EXPECT_DOUBLE_EQ(m_state.time, dt);
 }
 
+TEST_F(Guard, StepsInSmallOnesAreFineEnoughForEntries) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};
+    const Points moved = m_state.x.array() + 1.0;
+    ClothStepper stepper(
+        m_garment, std::make_unique<Entering>(m_garment, 0.02, StepSettings::in_small_steps()),
+        entries_of_a_centimetre());
+    EXPECT_EQ(stepper.step(m_boundary, dt, m_state).substeps, 1);
+    EXPECT_EQ(m_state.x, moved);
+}
+
 TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheSolversAffair) {
     const Points moved = m_state.x.array() + 1.0;
     const auto expect_inner = [&](double entry, double motion) {
         m_boundary.obstacles = {ball(-0.2, -0.2 + motion)};
         ClothState state = m_state;
-        ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, entry), fine());
+        ClothStepper stepper(m_garment, std::make_unique<Entering>(m_garment, entry),
+                             entries_of_a_centimetre());
         EXPECT_EQ(stepper.step(m_boundary, dt, state).substeps, 1);
         EXPECT_EQ(state.x, moved);
     };
@@ -473,7 +486,7 @@ TEST_F(Guard, WhenTheFinerStepFailsTheFirstOneCounts) {
     const Points moved = m_state.x.array() + 1.0;
     auto solver = std::make_unique<Entering>(m_garment, 0.02);
     solver->parts_fail = true;
-    ClothStepper stepper(m_garment, std::move(solver), fine());
+    ClothStepper stepper(m_garment, std::move(solver), entries_of_a_centimetre());
     const StepReport report = stepper.step(m_boundary, dt, m_state);
     EXPECT_TRUE(report.finite);
     EXPECT_EQ(report.substeps, 1);

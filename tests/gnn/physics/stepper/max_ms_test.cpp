@@ -105,14 +105,10 @@ class SlowWhole : public StepSolver {
 };
 
 TEST_F(MaxMs, PartsThatCouldNotHaveFiveIterationsAreNotTaken) {
-    GuardSettings guard;
-    guard.fine_motion = 0.04;  // less than the ball's
-    // 5 hours a part
-    ClothStepper dear(m_garment, std::make_unique<SlowWhole>(m_garment, 1), guard);
+    ClothStepper dear(m_garment, std::make_unique<SlowWhole>(m_garment, 1));  // 5 hours a part
     dear.set_max_ms(7.5 * kHour);
     EXPECT_EQ(dear.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
-    // 3 minutes
-    ClothStepper cheap(m_garment, std::make_unique<SlowWhole>(m_garment, 100), guard);
+    ClothStepper cheap(m_garment, std::make_unique<SlowWhole>(m_garment, 100));  // 3 minutes
     cheap.set_max_ms(7.5 * kHour);
     m_state = ClothState::at_rest(m_garment);
     EXPECT_GT(cheap.step(ball(-0.15, -0.09), frame_time, m_state).substeps, 1);
