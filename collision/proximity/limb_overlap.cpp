@@ -92,6 +92,7 @@ void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
         m_ignored.assign(count, 0);
         m_without.assign(count, 0);
         m_passed.assign(count, 0);
+        m_pinched.assign(count, 0);
         m_found_joined.assign(count, 0);
         for (std::vector<int>* rows : {&m_rows, &m_next, &m_uncovered}) rows->reserve(count);
         m_covers.reserve(count);
@@ -270,7 +271,7 @@ void LimbOverlap::ignore_folded_at_end(const Boundary& boundary, const Points& x
 }
 
 /// Lets vertices in m_rows that are inside a joined limb ignore it where it lies over their own
-/// limb's skin.
+/// limb's skin: it pinches them.
 void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
     m_next.clear();
     for (size_t k = 0; k < m_rows.size(); ++k) {
@@ -282,9 +283,12 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
         m_next.push_back(i);
     }
     m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});
-    for (const int i : m_next)
-        if (!m_near.has(i) || m_near.distance[i] <= 0.0)
-            m_ignored[static_cast<size_t>(i)] |= ~m_without[static_cast<size_t>(i)];
+    for (const int i : m_next) {
+        const auto vertex = static_cast<size_t>(i);
+        if (m_near.has(i) && m_near.distance[i] > 0.0) continue;
+        m_ignored[vertex] |= ~m_without[vertex];
+        m_pinched[vertex] = 1;
+    }
 }
 
 const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
@@ -293,6 +297,7 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
         return boundary;
     }
     find_own_limbs(boundary, state.x);
+    std::fill(m_pinched.begin(), m_pinched.end(), 0);
     m_x = state.x + dt * state.v;
     m_boxes.fit(boundary, m_has_limbs, StepEnd::start);
     find_covered(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
@@ -306,8 +311,11 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     if (ignores_nothing()) return boundary;
     m_boundary = boundary;
     m_boundary.ignored_limbs = m_ignored;
-    for (size_t i = 0; i < m_own.size(); ++i)
+    m_boundary.pinched = m_pinched;
+    for (size_t i = 0; i < m_own.size(); ++i) {
         m_boundary.ignored_limbs[i] |= ignored_limbs(boundary, static_cast<int>(i));
+        m_boundary.pinched[i] |= is_pinched(boundary, static_cast<Eigen::Index>(i)) ? 1 : 0;
+    }
     return m_boundary;
 }
 

@@ -36,6 +36,8 @@ struct IgnoredDepth {
 ///   that is joined to it ignores it.
 /// - Limbs that are joined always meet, as in an armpit. There a vertex that has come inside
 ///   the other limb ignores it where it lies over its own limb's skin, until it is clear of it.
+///   While it is inside, the two pinch it: without friction that holds it there, it slips over the
+///   end of its own limb, and the arm is out of its sleeve.
 ///
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
@@ -54,7 +56,8 @@ class LimbOverlap {
                          Proximity* searches = nullptr);
 
     /// The boundary with the limbs that are ignored in the step that begins added to
-    /// Boundary::ignored_limbs; itself, if no vertex ignores any. It is valid until the next call.
+    /// Boundary::ignored_limbs and what is pinched in Boundary::pinched; itself, if no vertex
+    /// ignores any. It is valid until the next call.
     const Boundary& filter(const Boundary& boundary, double dt, const ClothState& state);
 
     /// How far the vertices are inside limbs that they ignored in the last step, at its end. What
@@ -108,6 +111,7 @@ class LimbOverlap {
     std::vector<LimbSet> m_own;       ///< |V|: 0: has not come near any limb yet
     std::vector<LimbSet> m_unjoined;  ///< |V|: limbs not joined to its own; 0: it has no own limb
     std::vector<LimbSet> m_ignored;   ///< |V|
+    std::vector<char> m_pinched;      ///< |V|: in this step
     std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over
     std::vector<LimbSet> m_passed;    ///< |V|: limbs that do not cover the vertex's own

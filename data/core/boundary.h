@@ -65,6 +65,9 @@ struct Boundary {
     SkinGoals goals;                     ///< of garments with goal limits; else not looked at
     std::vector<LimbSet> ignored_limbs;  ///< |V|: limbs and solids that a vertex does not touch, or
                                          ///< empty; LimbOverlap adds limbs
+    /// |V|: not 0 where a vertex lies between two skins that are folded onto each other: friction
+    /// holds it. Or empty; LimbOverlap fills it.
+    std::vector<char> pinched;
     /// Hierarchies of the mesh obstacles that all garments of a world share; null: whoever queries
     /// obstacles has its own. Results are the same. Leave it null for poses that only one garment
     /// meets, such as those of sub-steps: they would crowd out those of the world.
@@ -75,6 +78,11 @@ struct Boundary {
 inline LimbSet ignored_limbs(const Boundary& boundary, int vertex) {
     const auto i = static_cast<std::size_t>(vertex);
     return i < boundary.ignored_limbs.size() ? boundary.ignored_limbs[i] : 0;
+}
+
+inline bool is_pinched(const Boundary& boundary, Eigen::Index vertex) {
+    const auto i = static_cast<std::size_t>(vertex);
+    return i < boundary.pinched.size() && boundary.pinched[i] != 0;
 }
 
 }  // namespace cloth

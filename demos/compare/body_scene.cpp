@@ -44,7 +44,9 @@ BodyScene::BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Bo
 
 BodyScene::BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body,
                      const Outfit& outfit)
-    : ComparisonScene(outfit.garment, settings.rate), m_outfit(outfit) {
+    : ComparisonScene(outfit.garment, settings.rate),
+      m_outfit(outfit),
+      m_openings(outfit.garment, outfit.start.x, *body) {
     if (outfit.has_layers()) m_self_contact.thickness = Outfit::thickness;
     AnimationSettings animation;
     animation.limbs = settings.limbs;
@@ -94,10 +96,16 @@ Vec3 BodyScene::middle_of_covered(const Points& skin) const {
     return sum / std::max(1.0, static_cast<double>(m_covered.size()));
 }
 
+bool BodyScene::is_near_covered(const Points& skin, const Points& x) const {
+    const Vec3 offset = x.colwise().mean().transpose() - middle_of_covered(skin);
+    return (offset - m_start_offset).norm() <= 0.3;
+}
+
 std::string BodyScene::loss(const Boundary& boundary, const Points& x) const {
-    const Vec3 offset =
-        x.colwise().mean().transpose() - middle_of_covered(boundary.obstacles[0].x1);
-    return (offset - m_start_offset).norm() > 0.3 ? "slid off the body" : "";
+    const Points& skin = boundary.obstacles[0].x1;
+    if (!is_near_covered(skin, x)) return "slid off the body";
+    const std::string limb = m_openings.slipped_limb(skin, x);
+    return limb.empty() ? "" : limb + " slipped out of an opening";
 }
 
 }  // namespace cloth

@@ -6,6 +6,7 @@
 #include "data/body/animated_body.h"
 #include "data/body/outfit.h"
 #include "demos/compare/comparison_scene.h"
+#include "demos/compare/openings.h"
 
 namespace cloth {
 
@@ -43,7 +44,8 @@ class BodyScene : public ComparisonScene {
     std::vector<BodySegment> segments() const override;
     bool has_limbs() const override { return m_body->limbs() != nullptr; }
     /// "slid off the body": the garment's middle is 0.3 m from the middle of the skin that it
-    /// covers at its start, however the body bends.
+    /// covers at its start, however the body bends. "LeftFingerBase slipped out of an opening": see
+    /// Openings.
     std::string loss(const Boundary& boundary, const Points& x) const override;
 
     SelfContactSettings self_contact() const override { return m_self_contact; }
@@ -53,6 +55,7 @@ class BodyScene : public ComparisonScene {
     BodyScene(const BodySceneSettings& settings, std::shared_ptr<const Body> body,
               const Outfit& outfit);
     void find_covered_skin();
+    bool is_near_covered(const Points& skin, const Points& x) const;
     Vec3 middle_of_covered(const Points& skin) const;
 
     std::unique_ptr<AnimatedBody> m_body;
@@ -61,6 +64,7 @@ class BodyScene : public ComparisonScene {
     int m_lead_in_frames = 0;
     std::vector<int> m_covered;  ///< vertices of the skin, as often as garment vertices are nearest
     Vec3 m_start_offset;         ///< from their middle to the garment's, at its start (m)
+    Openings m_openings;
 };
 
 /// @throws UsageError naming the garments there are if a part of the outfit is none of them, and no

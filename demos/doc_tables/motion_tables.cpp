@@ -97,6 +97,7 @@ MarkdownTable clip_times_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"solver",
                      "clips",
+                     "clips in which the shirt stays on",
                      "ms per step: median of the clips",
                      "95 % of a clip's steps, over its median: middle clip / worst",
                      "longest step of a clip, over its median: middle clip / worst",
@@ -113,8 +114,9 @@ MarkdownTable clip_times_table(const std::vector<DataFile>& files) {
             return significant(median(values), 2) + " / " + significant(quantile(values, 1.0), 2);
         };
         table.rows.push_back(
-            {stepper, std::to_string(rows.size()), significant(median(medians), 2),
-             middle_and_worst(p95), middle_and_worst(longest),
+            {stepper, std::to_string(rows.size()),
+             count_of(rows, [](const DataRow& row) { return row.truth("/held"); }),
+             significant(median(medians), 2), middle_and_worst(p95), middle_and_worst(longest),
              std::to_string(std::count_if(longest.begin(), longest.end(),
                                           [](double value) { return value > 3.0; }))});
     }

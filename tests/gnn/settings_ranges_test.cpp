@@ -30,6 +30,7 @@ TEST(SettingsRanges, Potential) {
     expect_range(name + "friction_slip_speed", &S::friction_slip_speed, 1e-5, 1.0, use);
     expect_range(name + "goal_stiffness", &S::goal_stiffness, 0.1, 1000.0, use);
     expect_range(name + "friction_limit", &S::friction_limit, 0.0, 100.0, use);
+    expect_range(name + "pinch_pressure", &S::pinch_pressure, 0.0, 1e5, use);
 }
 
 TEST(SettingsRanges, Newton) {

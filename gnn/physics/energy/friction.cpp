@@ -56,8 +56,12 @@ void FrictionEnergy::begin_step(const Garment& garment, const ClothState& state,
         const double mu = settings.scale * boundary.obstacles[obstacle].friction;
         const Vec3 normal = mean_normal(contacts.normal0.row(i), contacts.normal1.row(i));
         const double depth = settings.contact_distance - contacts.distance[i];
+        const double mass = garment.masses()[i];
+        const double pinch = is_pinched(boundary, i)
+                                 ? settings.pinch_pressure * mass / garment.fabric().density
+                                 : 0.0;
         const double force =
-            mu * normal_force(garment.masses()[i], boundary.gravity, normal, depth, settings);
+            mu * std::max(pinch, normal_force(mass, boundary.gravity, normal, depth, settings));
         if (!(force > 0.0)) continue;
         const Vec3 carried = contacts.point1.row(i) - contacts.point0.row(i);
         const Vec3 slip = slip_at_start(state.stick, i, normal, force, m_slip);

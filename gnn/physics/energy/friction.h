@@ -16,6 +16,7 @@ struct FrictionSettings {
     double contact_distance = 0;  ///< eps of the contact energy (m)
     double contact_weight = 0;    ///< w of the contact energy (N/m^2)
     double pressure_limit = 10;   ///< largest normal force, in units of the vertex's weight
+    double pinch_pressure = 0;    ///< on vertices that are pinched (Pa), see Boundary::pinched
 };
 
 /// Coulomb friction as a lagged dissipative potential,
@@ -36,7 +37,8 @@ struct FrictionSettings {
 /// N_i, fixed at t, is the larger of two estimates: the weight that the surface carries, m |g|
 /// max(0, n . up), exact for cloth lying on it; and the contact force 3 w depth^2 at x_t, which
 /// also holds on vertical surfaces. The second is limited, because a vertex half a millimetre too
-/// deep in an unconverged state would otherwise be glued by a thousand times its weight.
+/// deep in an unconverged state would otherwise be glued by a thousand times its weight. Of
+/// vertices that are pinched between two skins it is at least the skins' pressure on their area.
 ///
 /// HOOD's friction has the same form with three defects that are not kept: its radius is compared
 /// with squared distances, its up axis is not gravity's, and its body moves one frame late.

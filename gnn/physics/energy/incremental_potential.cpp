@@ -31,6 +31,7 @@ void check_settings(const PotentialSettings& settings) {
     check_range("PotentialSettings.friction_slip_speed", settings.friction_slip_speed, 1e-5, 1.0);
     check_range("PotentialSettings.goal_stiffness", settings.goal_stiffness, 0.1, 1000.0);
     check_range("PotentialSettings.friction_limit", settings.friction_limit, 0.0, 100.0);
+    check_range("PotentialSettings.pinch_pressure", settings.pinch_pressure, 0.0, 1e5);
 }
 
 // A layer that is not quite flat lies on the other with one in so many of its pairs.
@@ -104,10 +105,11 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     m_gravity.begin_step(boundary.gravity, boundary.accelerations);
     m_contact.begin_step(contacts, m_settings.contact_distance);
     m_ridges.begin_step(contacts, m_settings.ridge_distance);
-    m_friction.begin_step(*m_garment, state, boundary, contacts,
-                          {m_settings.friction_scale, m_settings.friction_distance,
-                           m_settings.friction_slip_speed * dt, m_settings.contact_distance,
-                           m_settings.contact_weight, m_settings.friction_limit});
+    m_friction.begin_step(
+        *m_garment, state, boundary, contacts,
+        {m_settings.friction_scale, m_settings.friction_distance,
+         m_settings.friction_slip_speed * dt, m_settings.contact_distance,
+         m_settings.contact_weight, m_settings.friction_limit, m_settings.pinch_pressure});
     m_self_contact.begin_step(state, dt, tangles);
     m_layer_friction.begin_step(
         m_self_contact, state.x, m_settings.friction_slip_speed * dt,

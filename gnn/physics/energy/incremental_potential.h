@@ -35,6 +35,10 @@ struct PotentialSettings {
     /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
     /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
     double friction_limit = 10.0;
+    /// Of two skins on the cloth between them (Pa, 0 to 1e5), see Boundary::pinched. Without it
+    /// sleeves slip off arms that are folded into the chest; too much of it tears at them. The
+    /// default is a light touch: 1 kg on 250 cm^2.
+    double pinch_pressure = 400.0;
     /// Of the limits of skinned goals, in units of the fabric's longitudinal stiffness, 0.1 to
     /// 1000. What it leaves beyond a limit is projected back at the end of a step.
     double goal_stiffness = 10.0;

@@ -79,12 +79,13 @@ bool is_valid_step(const Garment& garment, const ClothState& state, const Bounda
     const Eigen::Index count = garment.vertex_count();
     const Eigen::Index pins = static_cast<Eigen::Index>(garment.pins().size());
     const Eigen::Index accelerations = boundary.accelerations.rows();
-    const bool sizes = state.x.rows() == count && state.v.rows() == count &&
-                       boundary.pin_targets.rows() == pins &&
-                       (accelerations == 0 || accelerations == count) &&
-                       are_goals_for(garment.goal_limits(), boundary.goals, count) &&
-                       (boundary.ignored_limbs.empty() ||
-                        boundary.ignored_limbs.size() == static_cast<size_t>(count));
+    const bool sizes =
+        state.x.rows() == count && state.v.rows() == count && boundary.pin_targets.rows() == pins &&
+        (accelerations == 0 || accelerations == count) &&
+        are_goals_for(garment.goal_limits(), boundary.goals, count) &&
+        (boundary.ignored_limbs.empty() ||
+         boundary.ignored_limbs.size() == static_cast<size_t>(count)) &&
+        (boundary.pinched.empty() || boundary.pinched.size() == static_cast<size_t>(count));
     return sizes && std::isfinite(dt) && dt > 0.0 && state.x.allFinite() && state.v.allFinite() &&
            is_finite(boundary);
 }

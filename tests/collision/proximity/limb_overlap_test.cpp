@@ -75,6 +75,12 @@ int ignoring(const Boundary& boundary, LimbSet limb) {
                                           [&](LimbSet limbs) { return (limbs & limb) != 0; }));
 }
 
+int pinched(const Boundary& boundary) {
+    EXPECT_EQ(boundary.pinched.size(), boundary.ignored_limbs.size());
+    return static_cast<int>(
+        std::count_if(boundary.pinched.begin(), boundary.pinched.end(), [](char p) { return p; }));
+}
+
 TEST(LimbOverlap, LeavesABodyWithoutOverlapAlone) {
     const TwoLimbs body(false);
     LimbOverlap limbs;
@@ -93,7 +99,9 @@ TEST(LimbOverlap, AllClothIgnoresACoveredLimbUntilItIsClear) {
     LimbOverlap limbs;
     const ClothState state = shell();
     limbs.filter(body.boundary(0.3, 0.3), dt, state);
-    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.24, 0.17), dt, state), arm), state.x.rows());
+    const Boundary& covered = limbs.filter(body.boundary(0.24, 0.17), dt, state);
+    EXPECT_EQ(ignoring(covered, arm), state.x.rows());
+    EXPECT_EQ(pinched(covered), 0) << "by limbs that are not joined";
     EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.17, 0.17), dt, state), trunk), 0);
     // out of the trunk, but not of the cloth
     EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.17, 0.205), dt, state), arm), state.x.rows());
@@ -158,7 +166,20 @@ TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
         const double depth = 0.15 - folded.x.row(i).norm();
         if (std::abs(depth) < 0.005) continue;
         EXPECT_EQ((ignored_limbs(outside, static_cast<int>(i)) & trunk) != 0, depth > 0.0) << i;
+        EXPECT_EQ(is_pinched(outside, i), depth > 0.0) << i;
     }
+}
+
+/// It still ignores the trunk until there is room for it.
+TEST(LimbOverlap, ASleeveIsPinchedOnlyWhileItsArmIsInTheTrunk) {
+    const TwoLimbs body(true);
+    LimbOverlap limbs;
+    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+    EXPECT_GT(pinched(limbs.filter(body.boundary(0.14, 0.14), dt, sleeve(0.14))), 0);
+    limbs.filter(body.boundary(0.14, 0.208), dt, sleeve(0.14));
+    const Boundary& outside = limbs.filter(body.boundary(0.208, 0.208), dt, sleeve(0.208));
+    EXPECT_GT(ignoring(outside, trunk), 0);
+    EXPECT_EQ(pinched(outside), 0);
 }
 
 TEST(LimbOverlap, AThinCoverIsContact) {

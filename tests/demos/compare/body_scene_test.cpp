@@ -96,7 +96,7 @@ TEST(BodyScene, AWrongGarmentIsAnsweredWithTheRightOnes) {
     }
 }
 
-// Crouching moves the mean of the whole body by more than that of the torso.
+// Sitting moves the mean of the whole body by more than that of the torso.
 TEST(BodySceneLoss, LegsThatMoveAloneDoNotCount) {
     const BodyScene scene(small_shirt());
     const double start = -scene.lead_in_frames() * scene.frame_time();
@@ -104,7 +104,7 @@ TEST(BodySceneLoss, LegsThatMoveAloneDoNotCount) {
     Points& skin = boundary.obstacles[0].x1;
     const double hem = scene.garment().rest().vertices.col(1).minCoeff();
     for (Eigen::Index i = 0; i < skin.rows(); ++i)
-        if (skin(i, 1) < hem - 0.1) skin(i, 1) += 0.8;
+        if (skin(i, 1) < hem - 0.1) skin(i, 2) += 0.8;
     EXPECT_EQ(scene.loss(boundary, scene.garment().rest().vertices), "");
 }
 

@@ -107,6 +107,25 @@ TEST(HardRun, SaysWhatFailedFirstAndWhen) {
     EXPECT_NE(slow.failure.find("slow motion"), std::string::npos) << slow.failure;
 }
 
+TEST(HardRun, WhatIsLostForAThirdOfASecondOrAtTheEndIsLost) {
+    HardCase hard = falling({});
+    hard.frames = 30;
+    const auto lost_in = [&](int first, int last) {
+        HardSceneParts parts = hard.parts();
+        parts.loss = [=, frame = 0](const Boundary&, const Points&) mutable {
+            ++frame;
+            return frame > first && frame <= last + 1 ? "gone" : "";
+        };
+        return run(hard, {100, [](ClothState&) { return true; }}, std::move(parts));
+    };
+    EXPECT_TRUE(lost_in(5, 13).held()) << "nine frames";
+    const HardRun lost = lost_in(5, 14);
+    EXPECT_EQ(lost.first_failed_frame, 5);
+    EXPECT_EQ(lost.failure, "gone");
+    EXPECT_EQ(lost_in(27, 29).first_failed_frame, 27);
+    EXPECT_TRUE(lost_in(27, 28).held());
+}
+
 TEST(HardRun, InsideAnObstacleIsSeenButNotOfPins) {
     HardSceneParts parts = swing(level_sheet(60), {});
     const Vec3 pin = parts.start.x.row(parts.garment.pins()[0]);

@@ -93,6 +93,18 @@ TEST_F(FrictionTest, ACeilingCarriesNoWeight) {
     EXPECT_EQ(friction.value(state.x.rowwise() + Eigen::RowVector3d(0.1, 0, 0)), 0.0);
 }
 
+TEST_F(FrictionTest, SkinsHoldWhatTheyPinchByTheirPressureOnItsArea) {
+    boundary.pinched.assign(static_cast<size_t>(state.x.rows()), 0);
+    boundary.pinched[7] = 1;
+    settings.pinch_pressure = 400.0;
+    begin(Vec3::UnitZ());
+    Points g;
+    gradient(state.x.rowwise() + Eigen::RowVector3d(0.1, 0.0, 0.0), g);
+    const double area = garment.masses()[7] / garment.fabric().density;
+    EXPECT_NEAR(g(7, 0), 0.4 * 400.0 * area, 1e-4 * 400.0 * area);
+    EXPECT_EQ(friction.sliders().size(), 1u) << "a wall carries no weight";
+}
+
 TEST_F(FrictionTest, PressureHoldsOnAVerticalWallUpToTheLimit) {
     const Points slid = state.x.rowwise() + Eigen::RowVector3d(0, 0.1, 0);
     begin(Vec3::UnitZ());

@@ -130,6 +130,11 @@ TEST(IsValidStep, RefusesWrongSizesAndTimeSteps) {
     scene = good;
     scene.boundary.accelerations.setZero(2, 3);
     EXPECT_FALSE(is_valid_step(scene.garment, scene.state, scene.boundary, dt));
+    scene = good;
+    scene.boundary.pinched.assign(scene.garment.masses().size(), 1);
+    EXPECT_TRUE(is_valid_step(scene.garment, scene.state, scene.boundary, dt));
+    scene.boundary.pinched.pop_back();
+    EXPECT_FALSE(is_valid_step(scene.garment, scene.state, scene.boundary, dt));
 }
 
 }  // namespace
