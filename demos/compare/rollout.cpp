@@ -92,7 +92,9 @@ void RolloutMeter::record_shape(const Boundary& boundary, int frame) {
     if (stretch.p99 > 2.0) fail(frame, "torn: 1 % of the edges are stretched beyond 2");
     if (penetration.fraction_inside > 0.2) fail(frame, "a fifth of the garment is inside");
     const std::string loss = m_scene.loss(boundary, x);
-    if (!loss.empty()) fail(frame, loss);
+    const bool is_last = frame + 1 == m_scene.frames();
+    if (const auto since = m_loss.add(frame, !loss.empty(), is_last, m_scene.frame_time()))
+        fail(*since, loss);
 }
 
 static double highest(const std::vector<double>& values) {

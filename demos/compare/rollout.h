@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collision/proximity/metrics.h"
+#include "demos/compare/lasting_loss.h"
 #include "demos/compare/references.h"
 #include "demos/compare/step_energies.h"
 #include "gnn/stepper.h"
@@ -68,6 +69,7 @@ class RolloutMeter {
     Stepper& m_stepper;
     Proximity& m_proximity;
     ClothState m_before, m_state;
+    LastingLoss m_loss;
     Rollout m_rollout;
 };
 

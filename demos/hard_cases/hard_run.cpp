@@ -7,6 +7,7 @@
 
 #include "collision/proximity/metrics.h"
 #include "collision/self/self_tangles.h"
+#include "demos/compare/lasting_loss.h"
 
 namespace cloth {
 namespace {
@@ -94,20 +95,10 @@ class HardMeter {
         check(frame);
         if (is_impaled(outside, garment.rest().faces, m_state.x))
             fail(frame, "a limb is through the cloth");
-        check_loss(frame, m_scene.loss(outside, m_state.x));
-    }
-
-    /// Only what lasts is lost: a hand may reach into its own sleeve for a moment.
-    void check_loss(int frame, const std::string& loss) {
-        constexpr double lasting = 1.0 / 3.0;  // s
-        if (loss.empty()) {
-            m_lost_since.reset();
-            return;
-        }
-        if (!m_lost_since) m_lost_since = frame;
+        const std::string loss = m_scene.loss(outside, m_state.x);
         const bool is_last = frame + 1 == m_scene.frames();
-        if (is_last || (frame + 1 - *m_lost_since) * m_scene.dt() >= lasting)
-            fail(*m_lost_since, loss);
+        if (const auto since = m_loss.add(frame, !loss.empty(), is_last, m_scene.dt()))
+            fail(*since, loss);
     }
 
     /// Pins are where the scene puts them.
@@ -170,7 +161,7 @@ class HardMeter {
     SelfTangles m_tangles;
     const std::vector<int>& m_kept;
     std::vector<double> m_motion_mm;
-    std::optional<int> m_lost_since;  ///< the frame from which on the scene's loss() said so
+    LastingLoss m_loss;
     HardRun m_run;
 };
 

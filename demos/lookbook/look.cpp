@@ -29,7 +29,9 @@ void Look::step() {
     const Boundary boundary = m_scene.frame_boundary(m_frame);
     measure(m_stepper->step(boundary, m_scene.frame_time(), m_state));
     const std::string loss = m_scene.loss(boundary, m_state.x);
-    if (!loss.empty()) fail(loss);
+    const bool is_last = m_frame + 1 == m_scene.frames();
+    if (const auto since = m_loss.add(m_frame, !loss.empty(), is_last, m_scene.frame_time()))
+        fail(*since, loss);
     ++m_frame;
 }
 
@@ -39,12 +41,12 @@ void Look::measure(const StepReport& report) {
     m_stretch_max = std::max(m_stretch_max, stretch.max);
     m_depth = std::max(m_depth, report.max_penetration);
     if (!report.finite) ++m_failed_steps;
-    if (stretch.p99 > 2.0) fail("torn: 1 % of the edges are stretched beyond 2");
+    if (stretch.p99 > 2.0) fail(m_frame, "torn: 1 % of the edges are stretched beyond 2");
 }
 
 /// Only the first failure counts.
-void Look::fail(const std::string& how) {
-    if (m_failure.empty()) m_failure = "frame " + std::to_string(m_frame) + ": " + how;
+void Look::fail(int frame, const std::string& how) {
+    if (m_failure.empty()) m_failure = "frame " + std::to_string(frame) + ": " + how;
 }
 
 Scene Look::picture(size_t colour) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "demos/compare/body_scene.h"
+#include "demos/compare/lasting_loss.h"
 #include "gnn/stepper.h"
 #include "render/scene.h"
 
@@ -41,7 +42,7 @@ class Look {
 
  private:
     void measure(const StepReport& report);
-    void fail(const std::string& how);
+    void fail(int frame, const std::string& how);
 
     BodyScene m_scene;
     std::string m_garment, m_body, m_motion;
@@ -51,6 +52,7 @@ class Look {
     int m_frame = 0;
     double m_stretch_p99 = 0.0, m_stretch_max = 0.0, m_depth = 0.0;  ///< largest so far; (m)
     int m_failed_steps = 0;
+    LastingLoss m_loss;
     std::string m_failure;
 };
 
