@@ -380,10 +380,11 @@ bool ClothStepper::are_few(int points) const {
     return points <= std::max<Eigen::Index>(1, m_garment->vertex_count() / 100);
 }
 
-/// How finely a step of this motion should have been taken.
+/// How finely a step of this motion from m_before should have been taken. Cloth that hardly moved
+/// took a whole one, however the solver steps otherwise.
 int ClothStepper::substeps_after(const StepReport& report, double dt, double motion) const {
     int substeps = report.finite ? 1 : 2;
-    const bool is_fine = m_substeps == 1 && m_solver->small_steps(dt) > 1;
+    const bool is_fine = m_substeps == 1 && m_solver->small_steps(dt, m_before) > 1;
     if (report.max_entry > m_guard.max_entry && !is_fine)
         substeps = std::max(substeps, substeps_for(motion, m_guard.fine_motion));
     if (!are_few(report.points_tunnelled))

@@ -144,8 +144,8 @@ class StepSolver {
     enum class From { start, guess };
     /// The same in so many small steps, from the start or without it. The state has the mean
     /// velocity of the step afterwards; the next one should go on from end_velocity().
-    StepReport in_small_steps(int count, const Boundary& boundary, double dt, From from,
-                              ClothState& state);
+    virtual StepReport in_small_steps(int count, const Boundary& boundary, double dt, From from,
+                                      ClothState& state);
     /// In how many a step of this length (s) is taken if the cloth moves.
     int small_steps(double dt) const;
     /// The same from this state; 1: it is whole.

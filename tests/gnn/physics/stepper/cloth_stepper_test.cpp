@@ -22,7 +22,12 @@ class Standing : public StepSolver {
                     ClothState& state) override {
         return parts_fail ? StepReport::failed() : StepSolver::part(boundary, h, limits, state);
     }
-    bool parts_fail = false;
+    StepReport correct(const Boundary& boundary, double h, const TunnellingDetector* through,
+                       const IterationLimits& limits, ClothState& state) override {
+        return corrections_fail ? StepReport::failed()
+                                : StepSolver::correct(boundary, h, through, limits, state);
+    }
+    bool parts_fail = false, corrections_fail = false;
 };
 
 class Failing : public Standing {
@@ -37,6 +42,14 @@ class Entering : public Standing {
     Entering(const Garment& garment, double entry,
              const StepSettings& settings = StepSettings::whole())
         : Standing(garment, settings), m_entry(entry) {}
+    StepReport in_small_steps(int count, const Boundary& boundary, double h, From from,
+                              ClothState& state) override {
+        const Points moved = state.x.array() + 1.0;
+        StepReport report = StepSolver::in_small_steps(count, boundary, h, from, state);
+        state.x = moved;
+        report.max_entry = m_entry;
+        return report;
+    }
     StepReport whole(const Boundary& boundary, double h, ClothState& state) override {
         ignored = boundary.ignored_limbs;
         state.x.array() += 1.0;
@@ -237,12 +250,22 @@ TEST_F(Guard, AStepThatWentPastASurfaceIsTakenAgainInSubsteps) {
 
 TEST_F(Guard, StepsInSmallOnesAreFineEnoughForEntries) {
     m_boundary.obstacles = {ball(-0.2, -0.13)};
+    m_state.v.col(1).setOnes();
     const Points moved = m_state.x.array() + 1.0;
+    auto solver = std::make_unique<Entering>(m_garment, 0.02, StepSettings::in_small_steps());
+    solver->corrections_fail = true;
+    ClothStepper stepper(m_garment, std::move(solver), entries_of_a_centimetre());
+    EXPECT_EQ(stepper.step(m_boundary, dt, m_state).substeps, 1);
+    EXPECT_EQ(m_state.x, moved);
+}
+
+/// Cloth at rest takes whole steps.
+TEST_F(Guard, ClothAtRestIsCutForEntriesHoweverItsSolverStepsOtherwise) {
+    m_boundary.obstacles = {ball(-0.2, -0.13)};
     ClothStepper stepper(
         m_garment, std::make_unique<Entering>(m_garment, 0.02, StepSettings::in_small_steps()),
         entries_of_a_centimetre());
-    EXPECT_EQ(stepper.step(m_boundary, dt, m_state).substeps, 1);
-    EXPECT_EQ(m_state.x, moved);
+    EXPECT_GT(stepper.step(m_boundary, dt, m_state).substeps, 1);
 }
 
 TEST_F(Guard, AShallowEntryAndASlowSurfaceAreTheSolversAffair) {
