@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "data/core/errors.h"
+#include "data/core/mesh_pieces.h"
 
 namespace cloth {
 
@@ -21,14 +22,6 @@ DirectedEdges directed_edges(const Faces& faces) {
     for (Eigen::Index f = 0; f < faces.rows(); ++f)
         for (int c = 0; c < 3; ++c) ++edges[{faces(f, c), faces(f, (c + 1) % 3)}];
     return edges;
-}
-
-std::vector<std::pair<int, int>> border_edges(const Faces& faces) {
-    const DirectedEdges edges = directed_edges(faces);
-    std::vector<std::pair<int, int>> border;
-    for (const auto& [edge, uses] : edges)
-        if (!edges.count({edge.second, edge.first})) border.push_back(edge);
-    return border;
 }
 
 int find_root(std::vector<int>& parent, int i) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace cloth {
 
@@ -67,6 +68,16 @@ TriMesh piece_of(const TriMesh& mesh, const std::vector<int>& face_pieces, int p
     std::vector<char> keep;
     for (const int of : face_pieces) keep.push_back(of == piece);
     return keep_faces(mesh, keep);
+}
+
+std::vector<std::pair<int, int>> border_edges(const Faces& faces) {
+    std::set<std::pair<int, int>> edges;
+    for (Eigen::Index f = 0; f < faces.rows(); ++f)
+        for (int c = 0; c < 3; ++c) edges.insert({faces(f, c), faces(f, (c + 1) % 3)});
+    std::vector<std::pair<int, int>> border;
+    for (const auto& [from, to] : edges)
+        if (!edges.count({to, from})) border.emplace_back(from, to);
+    return border;
 }
 
 double border_share(const Faces& faces) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "data/core/mesh.h"
@@ -18,6 +19,9 @@ TriMesh keep_faces(const TriMesh& mesh, const std::vector<char>& keep);
 
 /// One of the pieces.
 TriMesh piece_of(const TriMesh& mesh, const std::vector<int>& face_pieces, int piece);
+
+/// Edges (from, to) that one face alone has, in the direction of that face, sorted.
+std::vector<std::pair<int, int>> border_edges(const Faces& faces);
 
 /// The part of a surface's edges that have one face alone: 0 if it is closed.
 double border_share(const Faces& faces);

@@ -22,7 +22,7 @@ class Openings {
     Openings(const Garment& garment, const Points& start, const Body& body);
 
     /// The joint at the end of a limb that came out of an opening through which all its lines
-    /// passed, such as "LeftHand"; empty: there is none.
+    /// passed, such as "LeftFingerBase"; empty: there is none.
     /// @param skin  vertices of the body (m)
     /// @param x     |V| x 3 (m): the garment
     std::string slipped_limb(const Points& skin, const Points& x) const;
@@ -30,7 +30,12 @@ class Openings {
     int count() const { return static_cast<int>(m_openings.size()); }  ///< that limbs come out of
 
  private:
-    using Border = std::vector<std::pair<int, int>>;  ///< edges of one loop, along their faces
+    using Border = std::vector<std::pair<int, int>>;   ///< edges of one loop, along their faces
+    using Mean = std::vector<std::pair<int, double>>;  ///< vertices and weights, which sum to 1
+    struct Line {
+        int from = 0, to = 0;       ///< joints
+        std::vector<size_t> marks;  ///< that it leads along
+    };
     /// A line from one end to another one passes through an opening.
     struct Passage {
         size_t line = 0;
@@ -41,18 +46,17 @@ class Openings {
         std::vector<Passage> passages;
         std::string limb;  ///< on the side of it that has fewer ends
     };
-    /// Vertices and their weights, which sum to 1.
-    using Mean = std::vector<std::pair<int, double>>;
-    struct Line {
-        int from = 0, to = 0;  ///< joints
-        std::vector<Mean> points;
-    };
 
+    void find_marks(const Body& body);
+    void find_lines(const Body& body);
+    Points marks(const Points& skin) const;
+    static int times_through(const Border& border, const Points& x, const Line& line,
+                             const Points& marks);
     static std::vector<Border> borders(const Faces& faces);
-    static std::vector<Line> lines(const Body& body);
-    static int times_through(const Border& border, const Points& x, const Points& line);
-    std::vector<Points> lines_in(const Points& skin) const;
 
+    /// Points inside the body that move with its skin: each joint's, and from there on the tips of
+    /// those that end a limb. Empty: the skin says nothing of it.
+    std::vector<Mean> m_marks;
     std::vector<Line> m_lines;
     std::vector<Opening> m_openings;
 };
