@@ -29,6 +29,7 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings,
     check_range("LimbOverlapSettings.reach", settings.reach, 0.01, 0.1);
     check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
     check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);
+    check_range("LimbOverlapSettings.pinch_cover", settings.pinch_cover, 0.0, 0.2);
 }
 
 /// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
@@ -95,6 +96,7 @@ void LimbOverlap::find_own_limbs(const Boundary& boundary, const Points& x) {
         m_pinched.assign(count, 0);
         m_found_joined.assign(count, 0);
         for (std::vector<int>* rows : {&m_rows, &m_next, &m_uncovered}) rows->reserve(count);
+        m_deep.reserve(count);
         m_covers.reserve(count);
         m_proximity.query(x, boundary, m_near);
         m_near_own = m_near;
@@ -271,9 +273,10 @@ void LimbOverlap::ignore_folded_at_end(const Boundary& boundary, const Points& x
 }
 
 /// Lets vertices in m_rows that are inside a joined limb ignore it where it lies over their own
-/// limb's skin: it pinches them.
+/// limb's skin: deep in the fold, it pinches them.
 void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepEnd end) {
     m_next.clear();
+    m_deep.clear();
     for (size_t k = 0; k < m_rows.size(); ++k) {
         const int i = m_rows[k];
         const auto vertex = static_cast<size_t>(i);
@@ -281,13 +284,15 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
         if (!cover || !(cover->depth > m_settings.least_cover)) continue;
         m_without[vertex] = ~limb_at(boundary, m_near_own.obstacle[vertex], cover->face);
         m_next.push_back(i);
+        m_deep.push_back(cover->depth >= m_settings.pinch_cover ? 1 : 0);
     }
     m_proximity.query_rows(x, m_next, boundary, m_near, end, {&m_without});
-    for (const int i : m_next) {
+    for (size_t k = 0; k < m_next.size(); ++k) {
+        const int i = m_next[k];
         const auto vertex = static_cast<size_t>(i);
         if (m_near.has(i) && m_near.distance[i] > 0.0) continue;
         m_ignored[vertex] |= ~m_without[vertex];
-        m_pinched[vertex] = 1;
+        m_pinched[vertex] |= m_deep[k];
     }
 }
 

@@ -17,6 +17,8 @@ struct LimbOverlapSettings {
                            ///< vertex by this (m), 1e-3 to 0.05
     double least_cover = 0.01;  ///< of a joined limb (m) over the skin of a vertex's own limb, for
                                 ///< it to be ignored, 0 to 0.2
+    double pinch_cover = 0.04;  ///< from which on (m) the two pinch the vertex, 0 to 0.2: where
+                                ///< they only just meet, cloth that is held tears
 };
 
 /// How far cloth is inside limbs that it ignores.
@@ -36,8 +38,8 @@ struct IgnoredDepth {
 ///   that is joined to it ignores it.
 /// - Limbs that are joined always meet, as in an armpit. There a vertex that has come inside
 ///   the other limb ignores it where it lies over its own limb's skin, until it is clear of it.
-///   While it is inside, the two pinch it: without friction that holds it there, it slips over the
-///   end of its own limb, and the arm is out of its sleeve.
+///   While it is inside, and deep in the fold, the two pinch it: without friction that holds it
+///   there, it slips over the end of its own limb, and the arm is out of its sleeve.
 ///
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
@@ -112,6 +114,7 @@ class LimbOverlap {
     std::vector<LimbSet> m_unjoined;  ///< |V|: limbs not joined to its own; 0: it has no own limb
     std::vector<LimbSet> m_ignored;   ///< |V|
     std::vector<char> m_pinched;      ///< |V|: in this step
+    std::vector<char> m_deep;         ///< of m_next: deep enough in the fold to be pinched
     std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over
     std::vector<LimbSet> m_passed;    ///< |V|: limbs that do not cover the vertex's own

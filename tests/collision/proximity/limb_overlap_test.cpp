@@ -166,7 +166,36 @@ TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
         const double depth = 0.15 - folded.x.row(i).norm();
         if (std::abs(depth) < 0.005) continue;
         EXPECT_EQ((ignored_limbs(outside, static_cast<int>(i)) & trunk) != 0, depth > 0.0) << i;
-        EXPECT_EQ(is_pinched(outside, i), depth > 0.0) << i;
+    }
+}
+
+/// How much of the trunk (m) lies over the skin of an arm at `arm_x` below a point near it; below
+/// zero: none.
+double cover_of_trunk(const Eigen::RowVector3d& point, double arm_x) {
+    const Eigen::RowVector3d centre(arm_x, 0, 0);
+    const Eigen::RowVector3d up = (point - centre).normalized(), skin = centre + 0.05 * up;
+    const double along = skin.dot(up), inside = 0.15 * 0.15 - skin.squaredNorm();
+    return inside < 0.0 ? -1.0 : std::sqrt(along * along + inside) - along;
+}
+
+TEST(LimbOverlap, OnlyWhatIsDeepInAFoldIsPinched) {
+    const TwoLimbs body(true);
+    const ClothState folded = sleeve(0.14);
+    for (const double least : {0.01, 0.04, 0.08}) {
+        LimbOverlapSettings settings;
+        settings.pinch_cover = least;
+        LimbOverlap limbs(settings);
+        limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+        const Boundary& outside = limbs.filter(body.boundary(0.14, 0.14), dt, folded);
+        int deep = 0, shallow = 0;
+        for (Eigen::Index i = 0; i < folded.x.rows(); ++i) {
+            const double cover = cover_of_trunk(folded.x.row(i), 0.14);
+            if (std::abs(cover - least) < 0.0125) continue;  // a face's normal is not the ball's
+            EXPECT_EQ(is_pinched(outside, i), cover > least) << i << ", " << cover;
+            (cover > least ? deep : shallow) += 1;
+        }
+        EXPECT_GT(deep, 0) << least;
+        EXPECT_GT(shallow, 0) << least;
     }
 }
 
