@@ -158,7 +158,9 @@ ClothState sleeve(double x) {
 /// The part of a sleeve that its arm takes into the trunk stays on the arm.
 TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
     const TwoLimbs body(true);
-    LimbOverlap limbs;
+    LimbOverlapSettings settings;
+    settings.pinch_cover = 0.0;
+    LimbOverlap limbs(settings);
     limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
     const ClothState folded = sleeve(0.14);
     const Boundary& outside = limbs.filter(body.boundary(0.14, 0.14), dt, folded);
@@ -166,6 +168,7 @@ TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
         const double depth = 0.15 - folded.x.row(i).norm();
         if (std::abs(depth) < 0.005) continue;
         EXPECT_EQ((ignored_limbs(outside, static_cast<int>(i)) & trunk) != 0, depth > 0.0) << i;
+        EXPECT_EQ(is_pinched(outside, i), depth > 0.0) << i;
     }
 }
 
