@@ -2,7 +2,7 @@
 # Installs what is needed, builds it, and compares solvers on the T-shirt: a video and a report.
 # Quick the second time. Further arguments are handed to `compare`, which has more solvers and motions:
 #   demos/run.sh --frames 90 --reference-frames 30 --solvers \
-#     bullet,bullet-fine,quasi-newton-10,quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+0
+#     bullet,bullet-fine,xpbd-40,default,quasi-newton,small,hood_fast_own+0,small+0
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -14,6 +14,6 @@ cmake --build --preset demo --target compare
 out="out/compare"
 echo "== T-shirt on motion 01_01: comparing solvers"
 build/demo/demos/compare --garment tshirt --motion 01_01 --frames 60 --reference-frames 5 \
-  --solvers bullet,quasi-newton-10,xpbd-40,small --out "$out" "$@"
+  --solvers bullet,default,xpbd-40,small --out "$out" "$@"
 echo "video:  $PWD/$out/comparison.mp4"
 echo "report: $PWD/$out/report.html"

@@ -73,8 +73,9 @@ std::vector<DataSet> data_sets() {
          figures + "whole_motion.json",
          "build/release/demos/compare --garment tshirt --motion 01_01 --frames 0"
          " --reference-frames 0 --no-video --out OUT --solvers "
-         "bullet,bullet-fine,reference,quasi-newton-1,quasi-newton-3,quasi-newton-10,"
-         "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+3,medium+3,fast,small+0,medium+0",
+         "bullet,bullet-fine,reference,default,quasi-newton-1,quasi-newton-3,quasi-newton-10,"
+         "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+3,medium+3,fast,small+0,medium+0,"
+         "sampling_own+0,hood_fast_own+0",
          "report.json",
          {},
          {}},
@@ -154,6 +155,13 @@ std::vector<DataSet> data_sets() {
          " --steppers default,quasi-newton,quasi-newton-bdf2,small,small+3,fast,fast+0,"
          "xpbd-40 "
          "--no-pictures --out OUT",
+         "hard_cases.json",
+         {},
+         {}},
+        {"starts",
+         figures + "starts.json",
+         "build/release/demos/hard_cases --cases clipping-armature,fast-cape --starts 32"
+         " --steppers default,quasi-newton,small,xpbd-40 --no-pictures --out OUT",
          "hard_cases.json",
          {},
          {}},

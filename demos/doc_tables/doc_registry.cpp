@@ -43,6 +43,7 @@ const Registry& doc_registry() {
          {"generalisation", {"generalisation"}, generalisation_table},
          {"lookbook", {"lookbook"}, lookbook_table},
          {"hard_cases", {"hard_cases"}, hard_cases_table},
+         {"starts", {"starts"}, starts_table},
          {"motions", {"motions", "motions_no_limbs"}, motions_table},
          {"clip_times", {"clip_times"}, clip_times_table},
          {"bullet_scenes", {"bullet_scenes"}, bullet_scenes_table},

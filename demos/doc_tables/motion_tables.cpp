@@ -62,6 +62,23 @@ MarkdownTable hard_cases_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable starts_table(const std::vector<DataFile>& files) {
+    const DataFile& file = files.at(0);
+    MarkdownTable table;
+    table.heading = {"solver"};
+    const std::vector<std::string> cases = names_of(file.rows("rows"), "/case");
+    for (const std::string& name : cases) table.heading.push_back(name);
+    for (const std::string& stepper : names_of(file.rows("rows"), "/stepper")) {
+        table.rows.push_back({stepper});
+        for (const std::string& name : cases) {
+            const DataRow row = file.row("rows", {{"case", name}, {"stepper", stepper}});
+            table.rows.back().push_back(decimals(row.number("/starts_held"), 0) + " of " +
+                                        decimals(row.number("/starts"), 0));
+        }
+    }
+    return table;
+}
+
 MarkdownTable motions_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"body",

@@ -6,6 +6,8 @@ namespace cloth {
 
 /// Reports of `hard_cases`: scenes and motions that are held or not.
 MarkdownTable hard_cases_table(const std::vector<DataFile>& files);
+/// From how many starts cases are held that are held by chance.
+MarkdownTable starts_table(const std::vector<DataFile>& files);
 /// @param files  with limbs, and as one surface
 MarkdownTable motions_table(const std::vector<DataFile>& files);
 /// How evenly time is spent, clip by clip.

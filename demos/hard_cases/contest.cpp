@@ -16,7 +16,8 @@ bool too_expensive(const std::string& stepper, const HardScene& scene) {
     return stepper == "reference" && vertices * scene.frames() > reference_budget;
 }
 
-HardResult without_run(const HardRow& row) {
+HardResult without_run(HardRow row, int starts) {
+    row.starts = starts;
     return {row, {row.stepper + ": " + (row.held ? "refused" : "not run"), {}}};
 }
 
@@ -44,19 +45,32 @@ HardResult run_stepper(const HardContest& contest, const HardScene& scene,
                        const std::function<void(int, int, const std::string&)>& progress) {
     const HardCase& hard = *contest.hard;
     if (too_expensive(stepper, scene))
-        return without_run(skipped_row(hard, stepper, "too expensive", contest.frames));
+        return without_run(skipped_row(hard, stepper, "too expensive", contest.frames),
+                           contest.starts);
     std::unique_ptr<Stepper> solver;
     try {
         solver = make_solver(stepper, scene, contest.solver);
     } catch (const ArgumentError& error) {
-        return without_run(refused_row(hard, stepper, error.what(), contest.frames));
+        return without_run(refused_row(hard, stepper, error.what(), contest.frames),
+                           contest.starts);
     }
     const std::string reason = not_applicable(*solver, scene);
-    if (!reason.empty()) return without_run(skipped_row(hard, stepper, reason, contest.frames));
-    const HardRun run = run_hard_case(hard, scene, *solver, contest.drawn, [&](int done) {
-        progress(done, scene.frames(), hard.name + ", " + stepper);
-    });
-    const HardRow row = make_row(hard, stepper, run, contest.frames);
+    if (!reason.empty())
+        return without_run(skipped_row(hard, stepper, reason, contest.frames), contest.starts);
+    const int all = contest.starts * scene.frames();
+    const auto run_from = [&](int start, const std::vector<int>& drawn) {
+        const int before = start * scene.frames();
+        return run_hard_case(
+            hard, scene, *solver, drawn,
+            [&](int done) { progress(before + done, all, hard.name + ", " + stepper); }, start);
+    };
+    const HardRun run = run_from(0, contest.drawn);
+    HardRow row = make_row(hard, stepper, run, contest.frames);
+    row.starts = contest.starts;
+    for (int start = 1; start < contest.starts; ++start) {
+        solver = make_solver(stepper, scene, contest.solver);
+        if (run_from(start, {}).held()) ++row.starts_held;
+    }
     const std::string mark = run.held() ? ": held" : ": FAILED";
     return {row, {stepper + mark, run.x}};
 }

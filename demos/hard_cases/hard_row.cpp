@@ -36,6 +36,10 @@ double number(const ordered_json& value) {
     return value.is_null() ? HardRow::unknown : value.get<double>();
 }
 
+std::string starts_held(const HardRow& row) {
+    return std::to_string(row.starts_held) + " of " + std::to_string(row.starts) + " starts";
+}
+
 std::string verdict(const HardRow& row) {
     if (!row.held) return "not run";
     return *row.held ? "held" : "FAILED";
@@ -63,6 +67,7 @@ HardRow make_row(const HardCase& hard, const std::string& stepper, const HardRun
         row.ms_longest = highest(later);
     }
     row.frames = run.frames;
+    row.starts_held = run.held() ? 1 : 0;
     return row;
 }
 
@@ -103,6 +108,8 @@ ordered_json to_json(const HardRow& row) {
     json["ms_longest"] = rounded(row.ms_longest);
     json["frames"] = row.frames;
     json["frames_wanted"] = row.frames_wanted;
+    json["starts"] = row.starts;
+    json["starts_held"] = row.starts_held;
     return json;
 }
 
@@ -128,6 +135,8 @@ HardRow row_from_json(const ordered_json& json) {
     row.ms_longest = number(json.at("ms_longest"));
     row.frames = json.at("frames").get<int>();
     row.frames_wanted = json.at("frames_wanted").get<int>();
+    row.starts = json.at("starts").get<int>();
+    row.starts_held = json.at("starts_held").get<int>();
     return row;
 }
 
@@ -137,6 +146,7 @@ std::string text_line(const HardRow& row) {
                   row.hard_case.c_str(), row.stepper.c_str(), verdict(row).c_str(),
                   row.penetration_max_mm, row.stretch_p99, row.ms_median);
     std::string text = line;
+    if (row.starts > 1) text += "  held from " + starts_held(row);
     if (row.failure.empty()) return text;
     if (row.first_failed_frame) text += "  frame " + std::to_string(*row.first_failed_frame) + ":";
     return text + " " + row.failure;
@@ -163,13 +173,16 @@ std::string markdown(const std::vector<HardRow>& rows) {
             const auto row = std::find_if(rows.begin(), rows.end(), [&](const HardRow& r) {
                 return r.hard_case == one && r.stepper == stepper;
             });
-            if (row == rows.end())
+            if (row == rows.end()) {
                 table += " |";
-            else if (!row->held || *row->held)
-                table += " " + verdict(*row) + " |";
-            else
-                table += " frame " + std::to_string(*row->first_failed_frame) + ": " +
-                         row->failure + " |";
+                continue;
+            }
+            table += !row->held || *row->held
+                         ? " " + verdict(*row)
+                         : " frame " + std::to_string(*row->first_failed_frame) + ": " +
+                               row->failure;
+            if (row->held && row->starts > 1) table += " (held from " + starts_held(*row) + ")";
+            table += " |";
         }
         table += "\n";
     }

@@ -29,6 +29,8 @@ struct HardRow {
     double ms_median = unknown, ms_p95 = unknown, ms_longest = unknown;
     int frames = 0;  ///< that it lasted
     int frames_wanted = 0;
+    int starts = 1;  ///< see HardScene::start_from(); all figures above are of the first one's run
+    int starts_held = 0;
 };
 
 HardRow make_row(const HardCase& hard, const std::string& stepper, const HardRun& run,

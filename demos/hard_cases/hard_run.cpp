@@ -28,12 +28,12 @@ int ticks_per_frame(const Stepper& stepper, const HardScene& scene) {
 class HardMeter {
  public:
     HardMeter(const HardCase& hard, const HardScene& scene, Stepper& stepper,
-              const std::vector<int>& kept)
+              const std::vector<int>& kept, int start)
         : m_bounds(hard.bounds),
           m_in_full(scene.frames() >= hard.frames),
           m_scene(scene),
           m_stepper(stepper),
-          m_state(scene.start()),
+          m_state(scene.start_from(start)),
           m_tangles(scene.garment()),
           m_kept(kept) {}
 
@@ -183,8 +183,9 @@ std::string not_applicable(const Stepper& stepper, const HardScene& scene) {
 }
 
 HardRun run_hard_case(const HardCase& hard, const HardScene& scene, Stepper& stepper,
-                      const std::vector<int>& frames, const std::function<void(int)>& done) {
-    HardMeter meter(hard, scene, stepper, frames);
+                      const std::vector<int>& frames, const std::function<void(int)>& done,
+                      int start) {
+    HardMeter meter(hard, scene, stepper, frames, start);
     for (int frame = 0; frame < scene.frames() && meter.advance(frame); ++frame) done(frame + 1);
     return meter.finish();
 }

@@ -40,8 +40,10 @@ std::string not_applicable(const Stepper& stepper, const HardScene& scene);
 /// the case, as a Bullet world would let it.
 /// @param frames  at which the garment is kept, such as picture_frames()
 /// @param done    called after every frame
+/// @param start   see HardScene::start_from()
 HardRun run_hard_case(const HardCase& hard, const HardScene& scene, Stepper& stepper,
-                      const std::vector<int>& frames, const std::function<void(int)>& done);
+                      const std::vector<int>& frames, const std::function<void(int)>& done,
+                      int start = 0);
 
 /// The axis of a capsule that crosses a face: cloth that a limb has passed through. Vertices alone
 /// do not show it.

@@ -37,14 +37,16 @@ void run_case(const HardCaseOptions& options, const HardContest& contest, HardRe
               Progress& line) {
     std::vector<std::string> left;
     for (const std::string& stepper : contest.steppers)
-        if (!report.find(contest.hard->name, stepper, contest.frames)) left.push_back(stepper);
+        if (!report.find(contest.hard->name, stepper, contest.frames, contest.starts))
+            left.push_back(stepper);
     if (left.empty()) return;
     const HardScene scene(contest.hard->parts(), contest.frames);
     std::vector<HardStrip> strips;
     for (const std::string& stepper : left) {
         const HardCase hard = bounded(*contest.hard, report, contest.frames);
         const HardResult result = run_stepper(
-            {&hard, contest.frames, {}, contest.solver, contest.drawn}, scene, stepper,
+            {&hard, contest.frames, {}, contest.solver, contest.drawn, contest.starts}, scene,
+            stepper,
             [&](int done, int all, const std::string& what) { line.update(done, all, what); });
         report.add(result.row);
         strips.push_back(result.strip);
@@ -75,7 +77,8 @@ void run(const HardCaseOptions& options) {
             drawn.resize(static_cast<size_t>(frames));
             std::iota(drawn.begin(), drawn.end(), 0);
         }
-        run_case(options, {&hard, frames, options.steppers, solver, drawn}, report, line);
+        run_case(options, {&hard, frames, options.steppers, solver, drawn, options.starts}, report,
+                 line);
     };
     for (const std::string& name : options.cases) run_one(hard_case(name));
     for (const std::string& motion : with_folders_listed(options.motions))

@@ -12,6 +12,7 @@ struct HardCaseOptions {
     bool limbs = true;  ///< in these cases cloth passes through limbs that pass through others
     std::vector<std::string> steppers;  ///< see default_hard_case_steppers()
     double frames_scale = 1.0;          ///< of each case's frames, 0.001 to 1000
+    int starts = 1;                     ///< of each case, 1 to 1000, see HardScene::start_from()
     bool soak = false;                  ///< the soak cases run for 10,000 frames
     bool list = false;                  ///< name the cases and stop
     bool pictures = true;

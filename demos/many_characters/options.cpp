@@ -30,8 +30,8 @@ ManyCharactersOptions parse_many_characters_options(const std::vector<std::strin
     add_whole_number(app, "--characters", options.characters, 1, 200, "1 to 200 (default 10)");
     add_garment(app, options.garment, "that each wears (default tshirt_1000)");
     add_list(app, "--solvers", options.solvers,
-             "quasi-newton-K, xpbd-N, NAME or NAME+K of a network, guarded as\nthey ship (default "
-             "quasi-newton-10,small+3,xpbd-40)");
+             "default, quasi-newton-K, xpbd-N, NAME or NAME+K of a network,\n"
+             "guarded as they ship; without it default,small+3,xpbd-40");
     add_list(app, "--motions", options.motions,
              "numbers of clips or BVH files, which the characters take in turn\n(default: those "
              "of assimp-testmodels and of shared data, if there is any)");

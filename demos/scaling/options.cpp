@@ -42,7 +42,7 @@ ScalingOptions parse_scaling_options(const std::vector<std::string>& arguments) 
     add_list(app, "--vertices", vertices,
              "500 to 60000 each (default 1000,2000,4000,8000,12000,25000,\n50000)");
     add_list(app, "--solvers", options.solvers,
-             "as speed_error knows them (default quasi-newton-10,small+3,\nxpbd-40)");
+             "as speed_error knows them; without it default,small+3,\nxpbd-40");
     add_whole_number(app, "--frames", options.frames, 1, 1000, "that are measured (default 12)");
     add_whole_number(app, "--warm-up", options.warm_up, 0, 1000, "frames before them (default 3)");
     add_whole_number(app, "--threads", options.threads, 0, 256,

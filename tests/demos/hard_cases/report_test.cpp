@@ -126,6 +126,57 @@ TEST(HardRun, WhatIsLostForAThirdOfASecondOrAtTheEndIsLost) {
     EXPECT_TRUE(lost_in(27, 28).held());
 }
 
+TEST(HardScene, StartsDifferALittleAndOnlyWhereClothIsFree) {
+    const HardScene scene(swing(level_sheet(60), {}), 1);
+    const Points x = scene.start().x;
+    EXPECT_EQ(scene.start_from(0).x, x);
+    for (const int which : {1, 2, 1000}) {
+        const ClothState start = scene.start_from(which);
+        const Points off = start.x - x;
+        EXPECT_EQ(start.x, scene.start_from(which).x);
+        EXPECT_NE(start.x, scene.start_from(which + 1).x);
+        EXPECT_LE(off.cwiseAbs().maxCoeff(), 1.001e-7);
+        EXPECT_GT(off.cwiseAbs().maxCoeff(), 0.9e-7);
+        EXPECT_LT(off.colwise().mean().cwiseAbs().maxCoeff(), 0.5e-7) << "to all sides";
+        for (const int pin : scene.garment().pins()) EXPECT_EQ(off.row(pin).norm(), 0.0);
+    }
+}
+
+TEST(HardRun, BeginsAtTheStartThatItIsTold) {
+    const HardCase hard = falling({});
+    HardSceneParts parts = hard.parts();
+    const double at_first = parts.start.x(0, 0);
+    parts.loss = [=](const Boundary&, const Points& x) { return x(0, 0) > at_first ? "off" : ""; };
+    const HardScene scene(std::move(parts), hard.frames);
+    int held = 0;
+    for (int start = 0; start < 20; ++start) {
+        SpoilingStepper still(100, [](ClothState&) { return true; });
+        const HardRun run = run_hard_case(hard, scene, still, {}, [](int) {}, start);
+        EXPECT_EQ(run.held(), scene.start_from(start).x(0, 0) <= at_first);
+        held += run.held() ? 1 : 0;
+    }
+    EXPECT_GT(held, 1);
+    EXPECT_LT(held, 20);
+}
+
+TEST(HardContest, CountsTheStartsFromWhichACaseIsHeld) {
+    const auto result = [](const HardCase& hard) {
+        HardContest contest{&hard, 4, {}, {}};
+        contest.starts = 3;
+        return run_stepper(contest, HardScene(hard.parts(), 4), "xpbd-5", quiet).row;
+    };
+    const HardRow held = result(falling({}));
+    EXPECT_EQ(held.starts, 3);
+    EXPECT_EQ(held.starts_held, 3);
+    EXPECT_NE(text_line(held).find("held from 3 of 3 starts"), std::string::npos);
+    Bounds impossible;
+    impossible.rms_speed = 0.0;
+    const HardRow failed = result(falling(impossible));
+    EXPECT_EQ(failed.starts_held, 0);
+    EXPECT_NE(markdown({failed}).find("(held from 0 of 3 starts) |"), std::string::npos)
+        << markdown({failed});
+}
+
 TEST(HardRun, InsideAnObstacleIsSeenButNotOfPins) {
     HardSceneParts parts = swing(level_sheet(60), {});
     const Vec3 pin = parts.start.x.row(parts.garment.pins()[0]);
@@ -181,6 +232,7 @@ TEST(HardReport, RowsComeBackFromTheFile) {
     for (size_t k = 0; k < 4; ++k) EXPECT_EQ(to_json(again.rows()[k]), to_json(report.rows()[k]));
     EXPECT_NE(again.find("falling", "xpbd-5", 4), nullptr);
     EXPECT_EQ(again.find("falling", "xpbd-5", 5), nullptr) << "another number of frames";
+    EXPECT_EQ(again.find("falling", "xpbd-5", 4, 2), nullptr) << "more starts";
     const std::string table = markdown(again.rows());
     EXPECT_NE(table.find("| falling | held | held | not run | frame 0: refused: too small |"),
               std::string::npos)
