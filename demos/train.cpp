@@ -113,6 +113,9 @@ Options parse(int count, char** arguments) {
     add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
     add("--garment", garment, "NAME",
         "train on this garment alone: a name of data/assets/garments, or a file of yours");
+    app.add_flag("--proxies", settings.scenes.proxies,
+                 "steps start where a coarse garment of the wardrobe shows the fine one: the "
+                 "network learns its detail. Garments that have such a one, no sheets");
     add("--seed", settings.seed, "S", "(1)");
     add("--threads", settings.threads, "N", "for the scenes of a batch, and for validation (1)");
     add("--device", settings.device, "NAME", "cpu or cuda (cpu)");
@@ -156,6 +159,10 @@ Options parse(int count, char** arguments) {
         app.parse(count, arguments);
     } catch (const CLI::ParseError& error) {
         std::exit(app.exit(error));  // help, or what is wrong
+    }
+    if (settings.scenes.proxies) {
+        settings.scenes.garment_share = 1.0;
+        settings.scenes.garments = cloth::proxied_garments();
     }
     if (!garment.empty()) {
         cloth::load_garment_start(garment);  // throws before hours are spent on sheets alone

@@ -7,6 +7,7 @@
 #include "data/files/garment_assets.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
+#include "gnn/model/network_start.h"
 #include "gnn/physics/stepper/embedded_stepper.h"
 
 namespace cloth {
@@ -43,14 +44,19 @@ Garment proxy_named(const std::string& name, const std::string& proxy, const Gar
 }  // namespace
 
 std::unique_ptr<Stepper> make_proxy_solver(
-    const std::string& name, const std::string& proxy, const ComparisonScene& scene,
+    const std::string& name, const std::string& proxy, const ProxyDetail& detail,
+    const ComparisonScene& scene,
     const std::function<std::unique_ptr<Stepper>(const ComparisonScene&)>& make) {
     const auto coarse =
         std::make_shared<const ProxyScene>(proxy_named(name, proxy, scene.garment()), scene);
     auto stepper = make(*coarse);
+    EmbeddedStepperSettings settings;
+    settings.detail_iterations = detail.iterations;
+    std::shared_ptr<StepStart> network;
+    if (detail.network) network = std::make_shared<NetworkStart>(scene.garment(), detail.network);
     return std::make_unique<EmbeddedStepper>(
         scene.garment(), std::shared_ptr<const Garment>(coarse, &coarse->garment()),
-        std::move(stepper));
+        std::move(stepper), settings, network);
 }
 
 }  // namespace cloth

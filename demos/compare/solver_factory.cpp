@@ -192,6 +192,37 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
                       small_steps);
 }
 
+/// Of SOLVER~PROXY+DETAIL: K, NETWORK or NETWORK+K.
+ProxyDetail detail_named(const std::string& name, const std::string& detail,
+                         const SolverSettings& settings) {
+    ProxyDetail result;
+    if (detail.find_first_not_of("0123456789") == std::string::npos) {
+        result.iterations = whole_number("solver " + name, detail, 0, 1000);
+        return result;
+    }
+    const NetworkName network(detail);
+    if (network.torch && !settings.torch)
+        throw UsageError("solver " + name + ": this program is built without LibTorch");
+    if (!network.as_shipped)
+        result.iterations = whole_number("solver " + name, network.refine, 0, 1000);
+    result.network = make_predictor(
+        network, Weights::load(weights_file(network.variant, settings.weights)), settings);
+    return result;
+}
+
+/// @param tilde  its place in the name
+std::unique_ptr<Stepper> make_proxied(const std::string& name, size_t tilde,
+                                      const ComparisonScene& scene,
+                                      const SolverSettings& settings) {
+    const std::string proxy = name.substr(tilde + 1), solver = name.substr(0, tilde);
+    const size_t plus = proxy.find('+');
+    ProxyDetail detail;
+    if (plus != std::string::npos) detail = detail_named(name, proxy.substr(plus + 1), settings);
+    return make_proxy_solver(
+        name, proxy.substr(0, plus), detail, scene,
+        [&](const ComparisonScene& coarse) { return make_solver(solver, coarse, settings); });
+}
+
 std::unique_ptr<Stepper> make_own_solver(const std::string& name, const ComparisonScene& scene,
                                          const SolverSettings& settings) {
     if (name == "reference" || name == "reference" + bdf2 || starts_with(name, "newton"))
@@ -234,7 +265,8 @@ std::string weights_file(const std::string& variant, const std::string& folder) 
         "quasi-newton, quasi-newton-K, quasi-newton-KsR[-cgN], quasi-newton-KxS, xpbd-N, skinning, "
         "skinning-raw or a network of " +
         weights_folder(folder) + " (" + join_list(networks_in(folder), ", ") +
-        "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER");
+        "), NAME or NAME+K; SOLVER~N and SOLVER~GARMENT simulate a coarser garment by SOLVER, "
+        "+K, +NAME or +NAME+K behind that refine what it shows");
 }
 
 std::optional<StepSettings> small_steps_named(const std::string& solver,
@@ -263,11 +295,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
         return stepper;
     }
     const size_t tilde = name.find('~');
-    if (tilde != std::string::npos)
-        return make_proxy_solver(name, name.substr(tilde + 1), scene,
-                                 [&](const ComparisonScene& coarse) {
-                                     return make_solver(name.substr(0, tilde), coarse, settings);
-                                 });
+    if (tilde != std::string::npos) return make_proxied(name, tilde, scene, settings);
     if (starts_with(name, "bullet"))
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name, scene),
                                                     scene.segments());

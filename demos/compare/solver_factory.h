@@ -63,6 +63,8 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 ///
 /// "SOLVER~N" simulates a proxy of about N vertices by SOLVER, and shows the garment following it;
 /// "SOLVER~GARMENT" another garment of the same cut, such as tshirt_1000: see make_proxy_solver().
+/// Behind that, "+K", "+NETWORK" or "+NETWORK+K" give the garment a step of its own from there: K
+/// quasi-Newton iterations, a network, or both.
 ///
 /// @throws UsageError for an unknown name, a number out of range or a garment without a skinning
 ///         network, LoadError for broken weights, ArgumentError if the garment can have no such

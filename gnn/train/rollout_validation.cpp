@@ -10,7 +10,7 @@
 #include "data/body/motion.h"
 #include "data/core/check_range.h"
 #include "data/core/paths.h"
-#include "gnn/model/make_cloth.h"
+#include "gnn/model/make_proxy_cloth.h"
 #include "gnn/train/reference_file.h"
 #include "gnn/train/sheet_world.h"
 
@@ -188,6 +188,27 @@ bool RolloutValidation::prepare(const std::atomic<bool>& stop) {
                        [&](const auto& scene) { return find_reference(*scene, stop); });
 }
 
+std::unique_ptr<Stepper> RolloutValidation::make_stepper(
+    const Scene& scene, const std::shared_ptr<const EngineWeights>& weights, int iterations) const {
+    const Garment& garment = scene.scene->garment();
+    if (const auto& proxy = scene.scene->parts().proxy) {
+        ProxyClothSettings settings;
+        settings.proxy.step.proximity.threads = m_settings.threads;
+        settings.embedded.proximity.threads = m_settings.threads;
+        settings.embedded.detail_iterations = iterations;
+        settings.detail = weights;
+        settings.engine.threads = m_settings.threads;
+        return make_proxy_cloth(garment, proxy, settings);
+    }
+    ClothSettings settings;
+    settings.weights = weights;
+    settings.step = StepSettings::whole(IterationLimits::exactly(iterations));
+    settings.step.proximity.threads = m_settings.threads;
+    settings.engine.threads = m_settings.threads;
+    settings.guard = GuardSettings::limbs_alone();
+    return make_cloth(garment, settings);
+}
+
 std::optional<std::vector<RolloutResult>> RolloutValidation::measure(
     const Weights& weights, const std::atomic<bool>& stop) {
     if (!prepare(stop)) return std::nullopt;
@@ -195,13 +216,7 @@ std::optional<std::vector<RolloutResult>> RolloutValidation::measure(
     std::vector<RolloutResult> results;
     for (const auto& scene : m_scenes) {
         for (const int iterations : m_settings.iterations) {
-            ClothSettings settings;
-            settings.weights = packed;
-            settings.step = StepSettings::whole(IterationLimits::exactly(iterations));
-            settings.step.proximity.threads = m_settings.threads;
-            settings.engine.threads = m_settings.threads;
-            settings.guard = GuardSettings::limbs_alone();
-            const auto stepper = make_cloth(scene->scene->garment(), settings);
+            const auto stepper = make_stepper(*scene, packed, iterations);
             RolloutResult result;
             result.scene = scene->name;
             result.garment = scene->garment;

@@ -12,6 +12,8 @@
 
 namespace cloth {
 
+class EngineWeights;
+
 /// What a network is asked to simulate while it is trained.
 struct RolloutSettings {
     /// Motions, as load_motion_by_name() takes them; empty: those of the shared data folder's
@@ -55,7 +57,7 @@ struct RolloutResult {
 
 /// Rollouts of a network in the stepper that ships: engine, contact projection, limbs that pass
 /// through each other. Steps are never cut into sub-steps of the solver, which would hide what the
-/// network does.
+/// network does. Garments that follow a proxy do so here, too (see make_proxy_cloth()).
 ///
 /// The reference minimises the same energy at the same time step by Newton's method. It is computed
 /// when it is first needed, which takes minutes, and kept in a folder for the next run.
@@ -78,6 +80,9 @@ class RolloutValidation {
     struct Scene;
     void add_garments(const SceneFactory& factory);
     bool find_reference(Scene& scene, const std::atomic<bool>& stop) const;
+    std::unique_ptr<Stepper> make_stepper(const Scene& scene,
+                                          const std::shared_ptr<const EngineWeights>& weights,
+                                          int iterations) const;
     bool roll(const Scene& scene, Stepper& stepper, RolloutResult& result,
               const std::atomic<bool>& stop) const;
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "collision/response/resolve.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/stepper/guess.h"
 
 namespace cloth {
@@ -12,6 +14,18 @@ static ProximitySettings single_threaded() {
     return settings;
 }
 
+/// Small steps of the proxy, single-threaded and never cut, so that they depend on the state alone.
+static std::unique_ptr<EmbeddedStepper> embedded(const SceneParts& parts) {
+    if (!parts.proxy) return nullptr;
+    ClothStepperSettings settings;
+    settings.step.proximity = single_threaded();
+    settings.guard = GuardSettings::off();
+    EmbeddedStepperSettings shown;
+    shown.proximity = single_threaded();
+    return std::make_unique<EmbeddedStepper>(
+        *parts.garment, parts.proxy, std::make_unique<ClothStepper>(*parts.proxy, settings), shown);
+}
+
 TrainingScene::TrainingScene(SceneParts parts, const FeatureSettings& features, double dt)
     : state(parts.start),
       m_parts(std::move(parts)),
@@ -20,17 +34,32 @@ TrainingScene::TrainingScene(SceneParts parts, const FeatureSettings& features, 
       m_potential(*m_parts.garment),
       m_solver(*m_parts.garment),
       m_builder(*m_parts.garment, *m_parts.graph, features),
-      m_laplacian(cotangent_laplacian(m_parts.garment->rest())) {
+      m_laplacian(cotangent_laplacian(m_parts.garment->rest())),
+      m_proxy(embedded(m_parts)) {
 }
 
 void TrainingScene::prepare(double contact_weight) {
     m_parts.world->boundary(state.time, m_dt, m_boundary);
-    m_proximity.query(state.x, m_boundary, m_contacts);
     m_potential.set_contact_weight(contact_weight);
+    if (!start_at_proxy()) start_at_guess();
+    m_builder.build(state, m_boundary, m_potential, m_guess, m_features);
+}
+
+void TrainingScene::start_at_guess() {
+    m_proximity.query(state.x, m_boundary, m_contacts);
     m_potential.begin_step(state, m_boundary, m_contacts, m_dt);
     starting_guess(garment(), state, m_boundary, m_contacts, m_dt,
                    m_potential.settings().contact_distance, m_guess);
-    m_builder.build(state, m_boundary, m_potential, m_guess, m_features);
+}
+
+/// As StepSolver::go_on_from() does. False: there is no proxy, or its step failed.
+bool TrainingScene::start_at_proxy() {
+    if (!m_proxy || !m_proxy->shown_from(m_boundary, m_dt, state, m_guess)) return false;
+    m_proximity.query(state.x, m_boundary, m_contacts);
+    m_potential.begin_step(state, m_boundary, m_contacts, m_dt);
+    project_out(m_contacts, m_potential.settings().contact_distance, m_guess);
+    place_pins(garment(), m_boundary, m_guess);
+    return true;
 }
 
 double TrainingScene::refine(Points& x, int iterations) {

@@ -7,6 +7,7 @@
 #include "collision/proximity/proximity.h"
 #include "gnn/graph/features.h"
 #include "gnn/physics/solver/quasi_newton.h"
+#include "gnn/physics/stepper/embedded_stepper.h"
 
 namespace cloth {
 
@@ -25,6 +26,8 @@ struct SceneParts {
     std::uint64_t seed = 0;
     std::shared_ptr<const Garment> garment;
     std::shared_ptr<const ClothGraph> graph;
+    std::shared_ptr<const Garment> proxy;  ///< each step starts where this coarser garment shows
+                                           ///< the other, see EmbeddedStepper; null: at the guess
     std::unique_ptr<TrainingWorld> world;
     ClothState start;
     int warm_up = 0;  ///< frames that the solver advances before the network sees the scene
@@ -63,6 +66,8 @@ class TrainingScene {
 
  private:
     bool is_sound(const Points& x) const;
+    bool start_at_proxy();
+    void start_at_guess();
 
     SceneParts m_parts;
     double m_dt;
@@ -71,6 +76,7 @@ class TrainingScene {
     QuasiNewton m_solver;
     FeatureBuilder m_builder;
     Eigen::SparseMatrix<double> m_laplacian;
+    std::unique_ptr<EmbeddedStepper> m_proxy;
     Boundary m_boundary;
     SurfaceContacts m_contacts;
     Points m_guess;

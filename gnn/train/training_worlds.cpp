@@ -6,6 +6,7 @@
 
 #include "data/body/animated_body.h"
 #include "data/body/body_shapes.h"
+#include "data/core/carry_over.h"
 #include "data/core/check_range.h"
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
@@ -43,6 +44,17 @@ std::vector<std::string> training_garments() {
             "dress_1000",    "dress_4000",  "tshirt_1000", "tshirt_2000", "tshirt"};
 }
 
+std::vector<std::string> proxied_garments() {
+    return {"long_top", "shirt", "pants", "shorts", "skirt", "dress_4000", "tshirt_2000", "tshirt"};
+}
+
+/// The coarse garment of the same cut; empty: there is none.
+static std::string proxy_of(const std::string& garment) {
+    const std::vector<std::string> names = proxied_garments();
+    if (std::find(names.begin(), names.end(), garment) == names.end()) return "";
+    return garment.substr(0, garment.find_last_not_of("_0123456789") + 1) + "_1000";
+}
+
 void SceneSettings::check() const {
     check_range("SceneSettings.garment_share", garment_share, 0.0, 1.0);
     check_range("SceneSettings.shape_share", shape_share, 0.0, 1.0);
@@ -61,6 +73,8 @@ struct SceneFactory::Assets {
         TriMesh rest;
         Points worn;  ///< |V| x 3 (m)
         std::shared_ptr<const ClothGraph> graph;
+        std::optional<TriMesh> proxy = std::nullopt;  ///< at rest
+        Points proxy_worn = {};
     };
 
     std::vector<Wardrobe> garments;
@@ -86,6 +100,10 @@ SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, st
             m_assets->garments.push_back({name, garment.rest(), load_garment_start(name).x,
                                           std::make_shared<const ClothGraph>(build_cloth_graph(
                                               garment, m_config.graph_settings()))});
+            const std::string proxy = m_settings.proxies ? proxy_of(name) : "";
+            if (proxy.empty()) continue;
+            m_assets->garments.back().proxy = load_garment(proxy).rest();
+            m_assets->garments.back().proxy_worn = load_garment_start(proxy).x;
         }
         if (m_settings.motions.empty()) m_settings.motions = training_motions();
         for (const std::string& name : m_settings.motions)
@@ -95,6 +113,10 @@ SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, st
     } catch (const std::exception& error) {
         std::cerr << "train: no garment scenes: " << error.what() << "\n";
     }
+}
+
+static std::shared_ptr<const Garment> proxy_garment(const Garment& garment, const TriMesh& rest) {
+    return std::make_shared<const Garment>(carry_over(garment, rest, garment.name() + " proxy"));
 }
 
 SceneFactory::~SceneFactory() = default;
@@ -140,6 +162,7 @@ std::unique_ptr<TrainingScene> SceneFactory::make_garment(std::uint64_t seed,
         std::make_shared<const Garment>(piece.name, piece.rest, Fabric::soft_cotton()), animated,
         0.0, not_moving(piece.worn));
     parts.graph = piece.graph;
+    if (piece.proxy) parts.proxy = proxy_garment(*parts.garment, *piece.proxy);
     return finish(std::move(parts), seed);
 }
 
@@ -156,6 +179,7 @@ std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
         random.chance(m_settings.fabric_share) ? random.fabric() : Fabric::soft_cotton();
     TriMesh rest = piece.rest;
     Points worn = piece.worn;
+    std::optional<TriMesh> proxy = piece.proxy;
     std::shared_ptr<const Body> body = assets.body;
     std::shared_ptr<const ClothGraph> graph = piece.graph;
     if (assets.shapes && random.chance(m_settings.shape_share)) {
@@ -164,6 +188,8 @@ std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
         const Points carried = carried_along(worn, assets.body->rest(), body->rest());
         rest.vertices += carried;
         worn += carried;
+        if (proxy)
+            proxy->vertices += carried_along(piece.proxy_worn, assets.body->rest(), body->rest());
         graph = nullptr;
     }
     const auto animated = std::make_shared<const AnimatedBody>(body, motion);
@@ -180,6 +206,7 @@ std::unique_ptr<TrainingScene> SceneFactory::make(std::uint64_t seed) const {
     SceneParts parts = make_body_parts(garment, animated, yaw, std::move(start));
     if (!skinned) parts.warm_up = warm_up;
     parts.graph = graph;
+    if (proxy) parts.proxy = proxy_garment(*garment, *proxy);
     parts.life = std::max(5, std::min(frames - first, longest));
     return finish(std::move(parts), seed);
 }

@@ -13,6 +13,9 @@ namespace cloth {
 /// All committed garments of up to 4,000 vertices but tank_top; tshirt comes last.
 std::vector<std::string> training_garments();
 
+/// Those of them that follow a proxy, see SceneSettings::proxies; tshirt comes last.
+std::vector<std::string> proxied_garments();
+
 /// Names or files of the motions that are trained on: those of the shared data folder, else two of
 /// assimp-testmodels. Those that are kept for validation and reports are left out.
 std::vector<std::string> training_motions();
@@ -30,6 +33,10 @@ struct SceneSettings {
     std::vector<std::string> motions;  ///< names or files; empty: all training clips there are
     int max_warm_up = 40;              ///< frames, 0 to 1000
     SkinnedStartSettings skinned;      ///< of garment scenes; these have no warm-up
+    /// Each step starts where a coarser garment shows the other: the one of the wardrobe that has
+    /// 1,000 vertices and the same cut. Scenes of garments that have none, and sheets, start at the
+    /// guess.
+    bool proxies = false;
 
     /// @throws ArgumentError if a value is out of its range
     void check() const;

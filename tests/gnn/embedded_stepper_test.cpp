@@ -7,6 +7,7 @@
 #include "data/authoring/sheet.h"
 #include "data/core/carry_over.h"
 #include "data/core/errors.h"
+#include "gnn/physics/energy/incremental_potential.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/stepper_contract.h"
@@ -15,6 +16,12 @@ namespace cloth::test {
 namespace {
 
 using Proxy = std::shared_ptr<const Garment>;
+
+EmbeddedStepperSettings with_detail(int iterations) {
+    EmbeddedStepperSettings settings;
+    settings.detail_iterations = iterations;
+    return settings;
+}
 
 std::unique_ptr<Stepper> five_iterations(const Garment& garment) {
     return std::make_unique<ClothStepper>(garment,
@@ -27,11 +34,13 @@ std::unique_ptr<Stepper> xpbd_of(const Garment& garment) {
 
 /// The contract's sheets, of 8 x 8 vertices and more, follow one of 5 x 5.
 StepperCase embedded(const std::string& name,
-                     std::unique_ptr<Stepper> (*make_stepper)(const Garment&)) {
-    const auto make = [make_stepper](const Garment& garment) -> std::unique_ptr<Stepper> {
+                     std::unique_ptr<Stepper> (*make_stepper)(const Garment&),
+                     int detail_iterations = 0) {
+    const auto make = [=](const Garment& garment) -> std::unique_ptr<Stepper> {
         const Proxy proxy =
             std::make_shared<const Garment>(carry_over(garment, sheet(5, 0.5), "proxy"));
-        return std::make_unique<EmbeddedStepper>(garment, proxy, make_stepper(*proxy));
+        return std::make_unique<EmbeddedStepper>(garment, proxy, make_stepper(*proxy),
+                                                 with_detail(detail_iterations));
     };
     return {name, make, 1e-6, {}};
 }
@@ -47,6 +56,7 @@ StepperCase embedded_xpbd() {
 
 INSTANTIATE_TEST_SUITE_P(Embedded, StepperContract,
                          ::testing::Values(embedded("QuasiNewton5", five_iterations),
+                                           embedded("Detail2", five_iterations, 2),
                                            embedded_xpbd()),
                          case_name);
 
@@ -59,11 +69,12 @@ struct Follower {
     EmbeddedStepper stepper;
 
     explicit Follower(std::vector<int> pins = {}, const GoalLimits& limits = {},
-                      const EmbeddedStepperSettings& settings = {})
+                      const EmbeddedStepperSettings& settings = {},
+                      const std::shared_ptr<StepStart>& detail = nullptr)
         : fine(Garment("sheet", make_sheet(0.5, 0.5, 900), Fabric::soft_cotton(), std::move(pins))
                    .with_goals(limits)),
           proxy(std::make_shared<const Garment>(make_proxy(fine, {120}))),
-          stepper(fine, proxy, five_iterations(*proxy), settings) {}
+          stepper(fine, proxy, five_iterations(*proxy), settings, detail) {}
 
     static Boundary boundary() {
         Boundary boundary;
@@ -95,6 +106,46 @@ double depth_of(const Boundary& boundary, const Points& x) {
     VectorX distance;
     Proximity().signed_distance(x, boundary, StepEnd::end, distance);
     return -distance.minCoeff();
+}
+
+/// Adds the same to each vertex's place (m).
+class ShiftingStart : public StepStart {
+ public:
+    explicit ShiftingStart(const Vec3& by) : m_by(by) {}
+    std::string name() const override { return "shifting"; }
+    double fixed_dt() const override { return h; }
+    bool predict(const ClothState&, const Boundary&, const IncrementalPotential&,
+                 const Points& guess, PotentialValue&, Points& prediction, StageTimes&) override {
+        prediction = guess.rowwise() + m_by.transpose();
+        return false;
+    }
+
+ private:
+    Vec3 m_by;
+};
+
+/// A sheet that hangs from a corner above a ball, after so many steps.
+struct Draped {
+    Follower follower;
+    ClothState state;
+    Boundary boundary = Follower::boundary();
+
+    explicit Draped(int steps, const EmbeddedStepperSettings& settings = {},
+                    const std::shared_ptr<StepStart>& detail = nullptr)
+        : follower({0}, {}, settings, detail), state(ClothState::at_rest(follower.fine)) {
+        boundary.pin_targets = rows_of(state.x, follower.fine.pins());
+        boundary.obstacles.push_back(sphere({0.02, -0.13, 0.01}, 0.12));
+        for (int k = 0; k < steps; ++k) follower.step(boundary, state);
+    }
+};
+
+/// E of the fine garment's step from `state` to `x` (J).
+double energy_of(const Draped& draped, const ClothState& state, const Points& x) {
+    IncrementalPotential potential(draped.follower.fine);
+    SurfaceContacts contacts;
+    Proximity().query(state.x, draped.boundary, contacts);
+    potential.begin_step(state, draped.boundary, contacts, h);
+    return potential.value(x);
 }
 
 std::string refusal(const std::function<void()>& call) {
@@ -143,6 +194,83 @@ TEST(EmbeddedStepper, WhatTheProxyCannotShowFadesAndDoesNotJump) {
     state = wrinkled;
     ASSERT_TRUE(other.step(Follower::weightless(), state).finite);
     EXPECT_LT(other.distance_to_embedding(state), 1e-12);
+}
+
+TEST(EmbeddedStepper, DetailLowersTheFineGarmentsOwnEnergy) {
+    const ClothState start = Draped(8).state;
+    std::vector<double> energy;
+    for (const int iterations : {0, 1, 3, 300}) {
+        Draped draped(0, with_detail(iterations));
+        ClothState state = start;
+        ASSERT_TRUE(draped.follower.step(draped.boundary, state).finite);
+        EXPECT_LE(depth_of(draped.boundary, state.x), 0.0);
+        energy.push_back(energy_of(draped, start, state.x));
+    }
+    const double least = energy[3];
+    EXPECT_GT(energy[0] - least, 0.0);
+    EXPECT_LT(energy[1] - least, 0.3 * (energy[0] - least));
+    EXPECT_LT(energy[2] - least, 0.8 * (energy[1] - least));
+}
+
+TEST(EmbeddedStepper, ManyIterationsOfDetailAreTheFineGarmentsOwnStep) {
+    const ClothState start = Draped(8).state;
+    Draped draped(0, with_detail(500));
+    ClothStepper own(draped.follower.fine,
+                     ClothStepperSettings::plain(IterationLimits::exactly(500)));
+    ClothState state = start, expected = start;
+    ASSERT_TRUE(draped.follower.step(draped.boundary, state).finite);
+    ASSERT_TRUE(own.step(draped.boundary, h, expected).finite);
+    EXPECT_LT((state.x - expected.x).rowwise().norm().maxCoeff(), 1e-4);
+    EXPECT_GT(draped.follower.distance_to_embedding(state), 1e-3) << "the scene is no test";
+}
+
+TEST(EmbeddedStepper, ANetworkIsHeardWhereIterationsFollowOnlyIfItLowersTheEnergy) {
+    const auto bad = std::make_shared<ShiftingStart>(Vec3(0.01, 0.0, 0.0));
+    Draped with(4, with_detail(1), bad), without(4, with_detail(1));
+    EXPECT_TRUE(same_bits(with.state, without.state));
+    const StepReport report = with.follower.step(with.boundary, with.state);
+    EXPECT_TRUE(report.prediction_rejected);
+    EXPECT_EQ(with.follower.stepper.fixed_dt(), h);
+    EXPECT_EQ(without.follower.stepper.fixed_dt(), 0.0);
+    EXPECT_NE(with.follower.stepper.name().find("+shifting+1"), std::string::npos)
+        << with.follower.stepper.name();
+
+    Draped alone(4, with_detail(0), bad);
+    const auto middle = [](const Draped& draped) { return draped.state.x.col(0).mean(); };
+    EXPECT_GT(middle(alone), middle(without) + 5e-3) << "alone it is taken as it is";
+}
+
+TEST(EmbeddedStepper, DetailStaysWithinAnEdgeOfTheProxy) {
+    const auto far = std::make_shared<ShiftingStart>(Vec3(0.0, 0.0, 3.0));
+    Draped draped(6, with_detail(0), far);
+    const double edge = draped.follower.proxy->mean_edge_length();
+    EXPECT_GT(draped.follower.distance_to_embedding(draped.state), 0.5 * edge);
+    EXPECT_LT(draped.follower.distance_to_embedding(draped.state), 1.5 * edge)
+        << "where contact projection moves it";
+}
+
+TEST(EmbeddedStepper, DetailThatIsNotFiniteIsLeftOut) {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const auto broken = std::make_shared<ShiftingStart>(Vec3(nan, 0.0, 0.0));
+    Draped draped(4, with_detail(0), broken), plain(4);
+    EXPECT_LT((draped.state.x - plain.state.x).rowwise().norm().maxCoeff(), 3e-3)
+        << "where the proxy shows it, at the distance of contact";
+    EXPECT_TRUE(draped.follower.step(draped.boundary, draped.state).prediction_rejected);
+}
+
+TEST(EmbeddedStepper, WhatIsShownFromAStateDependsOnThatAlone) {
+    Draped draped(5), fresh(0);
+    Points x, again, of_fresh;
+    ASSERT_TRUE(draped.follower.stepper.shown_from(draped.boundary, h, draped.state, x));
+    ASSERT_TRUE(draped.follower.stepper.shown_from(draped.boundary, h, draped.state, again));
+    ASSERT_TRUE(fresh.follower.stepper.shown_from(draped.boundary, h, draped.state, of_fresh));
+    EXPECT_EQ(x, again);
+    EXPECT_EQ(x, of_fresh);
+    EXPECT_GT((x - draped.state.x).rowwise().norm().maxCoeff(), 1e-3);
+    Boundary bad = draped.boundary;
+    bad.gravity[0] = std::numeric_limits<double>::infinity();
+    EXPECT_FALSE(draped.follower.stepper.shown_from(bad, h, draped.state, again));
+    EXPECT_EQ(x, again);
 }
 
 TEST(EmbeddedStepper, AStateThatWasMovedGoesOnFromThere) {
@@ -291,6 +419,9 @@ TEST(EmbeddedStepper, BadInputIsRefusedByName) {
     };
     const auto good = std::make_shared<const Garment>(make_proxy(fine, {120}));
     EXPECT_EQ(make(good, true), "");
+    const std::string iterations =
+        refusal([&] { EmbeddedStepper(fine, good, five_iterations(*good), with_detail(-1)); });
+    EXPECT_NE(iterations.find("detail_iterations"), std::string::npos) << iterations;
     for (const auto& [text, word] :
          {std::pair(make(nullptr, false), "no proxy"), std::pair(make(good, false), "no stepper"),
           std::pair(make(pinned, true), "pins, or goals"),

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "collision/response/resolve.h"
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/physics/stepper/guess.h"
@@ -206,6 +207,21 @@ StepReport StepSolver::correct(const Boundary& boundary, double dt,
     return finish(boundary, dt, state, report);
 }
 
+bool StepSolver::go_on_from(Points& x, StepEnd contacts, const Boundary& boundary, double dt,
+                            const ClothState& state, StepReport& report) {
+    Stopwatch watch;
+    m_x = x;
+    find_contacts(boundary, contacts == StepEnd::start ? state.x : x, contacts);
+    report.times.proximity += watch.lap();
+    const double features = report.times.features;
+    const bool finite = run(boundary, dt, m_start.get(), Start::outside, m_settings.quasi_newton, 1,
+                            state, report) &&
+                        m_x.allFinite();
+    report.times.solve += watch.lap() - (report.times.features - features);
+    if (finite) x = m_x;
+    return finite;
+}
+
 /// Minimises a step in so many parts, from the guess or from m_x, with m_contacts. Leaves the end
 /// in m_x and m_last, the state before the last part.
 bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Start from,
@@ -291,6 +307,7 @@ bool StepSolver::minimise_part(const Boundary& boundary, const SurfaceContacts& 
     const PotentialValue* at_x = nullptr;
     if (from == Start::guess)
         at_x = choose_start(boundary, contacts, start, limits, m_last_dt, m_last, report);
+    if (from == Start::outside) at_x = start_outside(boundary, contacts, start, limits, report);
     if (start && limits.iterations == 0 && !at_x) return true;  // as it was predicted
     if (!descend(boundary, limits, at_x, m_last, report)) return false;
     const bool few = !start && m_settings.small_step_rate > 0.0;  // iterations
@@ -391,10 +408,29 @@ const PotentialValue* StepSolver::choose_start(const Boundary& boundary,
           m_guess);
     m_potential.separate_self_contact(m_guess);
     m_x = m_guess;
-    if (!start) return nullptr;
+    return start ? ask(*start, boundary, limits, state, report) : nullptr;
+}
+
+/// The same for m_x in the place of the extrapolation.
+const PotentialValue* StepSolver::start_outside(const Boundary& boundary,
+                                                const SurfaceContacts& contacts, StepStart* start,
+                                                const IterationLimits& limits, StepReport& report) {
+    m_guess = m_x;
+    if (!contacts.obstacle.empty())
+        project_out(contacts, m_potential.settings().contact_distance, m_guess);
+    place_pins(*m_garment, boundary, m_guess);
+    m_potential.separate_self_contact(m_guess);
+    m_x = m_guess;
+    return start ? ask(*start, boundary, limits, m_last, report) : nullptr;
+}
+
+/// What the start adds to m_guess.
+const PotentialValue* StepSolver::ask(StepStart& start, const Boundary& boundary,
+                                      const IterationLimits& limits, const ClothState& state,
+                                      StepReport& report) {
     StageTimes times;
     const bool guess_known =
-        start->predict(state, boundary, m_potential, m_guess, m_at_guess, m_started, times);
+        start.predict(state, boundary, m_potential, m_guess, m_at_guess, m_started, times);
     report.times.features = times.features;
     report.prediction_rejected = m_started.rows() != m_guess.rows() || !m_started.allFinite();
     if (report.prediction_rejected)

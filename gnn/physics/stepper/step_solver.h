@@ -141,6 +141,19 @@ class StepSolver {
     /// The arguments have passed is_valid_step(); a step that fails leaves the state as it was.
     virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
 
+    /// Moves `x` (|V| x 3, m), where something else says that the step ends, such as a coarser
+    /// garment, on towards the minimum: out of the obstacles, and from the start's prediction if
+    /// there is one. Neither contact projection nor untangling follows. False: it failed, and x is
+    /// as it was.
+    /// @param contacts  whether surface points are those nearest to the state, as in other steps, or
+    ///                  at the end to x: where something moved too far for the former to hold
+    bool go_on_from(Points& x, StepEnd contacts, const Boundary& boundary, double dt,
+                    const ClothState& state, StepReport& report);
+    /// Ends the step of go_on_from() where contact projection has put it (|V| x 3, m).
+    void end_at(const Points& x, ClothState& state) const {
+        m_potential.friction().remember(x, state.stick);
+    }
+
     enum class From { start, guess };
     /// The same in so many small steps, from the start or without it. The state has the mean
     /// velocity of the step afterwards; the next one should go on from end_velocity().
@@ -182,7 +195,7 @@ class StepSolver {
     IterationLimits adjusted(IterationLimits limits) const;
     IterationLimits enough(const IterationLimits& limits) const;
     IterationLimits for_correction(const IterationLimits& limits, double dt) const;
-    enum class Start { guess, here };  ///< here: m_x
+    enum class Start { guess, here, outside };  ///< here: m_x; outside: m_x, out of obstacles
     StepReport solve(const Boundary& boundary, double dt, StepStart* start,
                      const IterationLimits& limits, int parts, ClothState& state);
     void find_contacts(const Boundary& boundary, const Points& x, StepEnd end);
@@ -208,6 +221,12 @@ class StepSolver {
     const PotentialValue* choose_start(const Boundary& boundary, const SurfaceContacts& contacts,
                                        StepStart* start, const IterationLimits& limits, double dt,
                                        const ClothState& state, StepReport& report);
+    const PotentialValue* start_outside(const Boundary& boundary, const SurfaceContacts& contacts,
+                                        StepStart* start, const IterationLimits& limits,
+                                        StepReport& report);
+    const PotentialValue* ask(StepStart& start, const Boundary& boundary,
+                              const IterationLimits& limits, const ClothState& state,
+                              StepReport& report);
     const PotentialValue* lower_of_guess_and_prediction(bool guess_known, StepReport& report);
     MinimiseReport minimise(const IterationLimits& limits, const PotentialValue* at_x);
     bool iterates_after_newton() const;

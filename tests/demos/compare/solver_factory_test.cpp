@@ -95,6 +95,21 @@ TEST(SolverFactory, ProxiesAreSimulatedByAnySolver) {
     EXPECT_NO_THROW(make_solver("quasi-newton~120@20", scene, {}));
 }
 
+TEST(SolverFactory, ProxiesAreShownWithDetail) {
+    const LargeSheet scene;
+    for (const auto& [name, detail] :
+         {std::pair("xpbd-20~120+2", "+quasi-newton-2"), std::pair("default~120+small", "+small+0"),
+          std::pair("default~120+bf16-small+1", "small+1"),
+          std::pair("xpbd-20~120+0", "xpbd-20~1")}) {
+        SCOPED_TRACE(name);
+        const auto stepper = make_solver(name, scene, {});
+        EXPECT_NE(stepper->name().find(detail), std::string::npos) << stepper->name();
+        ClothState state = ClothState::at_rest(scene.garment());
+        ASSERT_TRUE(stepper->step(scene.boundary(0.0, 0.0), scene.frame_time(), state).finite);
+        EXPECT_LT(state.x.col(1).maxCoeff(), -5e-3) << "it does not fall";
+    }
+}
+
 TEST(SolverFactory, ProxiesAreRefusedByName) {
     const LargeSheet scene;
     const auto refused = [&](const std::string& name) -> std::string {
@@ -110,7 +125,9 @@ TEST(SolverFactory, ProxiesAreRefusedByName) {
           std::pair("quasi-newton~1000", "large sheet: it has 900 vertices"),
           std::pair("quasi-newton~no_such_shirt", "tshirt_1000"),
           std::pair("quasi-newton~tshirt_1000", "from the coarse mesh"),
-          std::pair("nothing~120", "xpbd-N"), std::pair("xpbd-20~120@10", "no limit")})
+          std::pair("nothing~120", "xpbd-N"), std::pair("xpbd-20~120@10", "no limit"),
+          std::pair("xpbd-20~120+nothing", "xpbd-N"), std::pair("xpbd-20~120+2000", "to 1000"),
+          std::pair("xpbd-20~120+small+x", "whole number")})
         EXPECT_NE(refused(name).find(word), std::string::npos) << name << ": " << refused(name);
 }
 

@@ -35,6 +35,51 @@ TEST(SceneFactory, GarmentsStartAsTheyAreWorn) {
     EXPECT_EQ(scene->garment().name(), "skirt_1000");
 }
 
+TEST(SceneFactory, ScenesWithProxiesStartWhereTheProxyShowsTheGarment) {
+    SceneSettings settings;
+    settings.proxies = true;
+    settings.garment_share = 1.0;
+    settings.shape_share = 1.0;
+    settings.garments = {"skirt", "skirt_1000"};
+    settings.motions = {"01_03"};
+    const SceneFactory factory(ModelConfig::variant_named("fast"), settings, 1);
+    const auto scene = factory.make_garment(1, "01_01", 0);
+    ASSERT_TRUE(scene->parts().proxy);
+    EXPECT_EQ(scene->parts().proxy->rest().vertices, load_garment_mesh("skirt_1000").vertices);
+    EXPECT_FALSE(factory.make_garment(1, "01_01", 1)->parts().proxy) << "is coarse itself";
+    for (int frame = 0; frame < 3; ++frame) {
+        scene->prepare(5e5);
+        const Points base = scene->features().base;
+        scene->prepare(5e5);
+        EXPECT_EQ(scene->features().base, base) << "depends on the state alone";
+        Points x = base;
+        const double before = scene->potential().value(base);
+        EXPECT_LT(scene->refine(x, 3), before);
+        const double edge = scene->parts().proxy->mean_edge_length();
+        EXPECT_LT((x - base).rowwise().norm().maxCoeff(), edge) << "it is near the minimum";
+        ASSERT_TRUE(scene->advance(x));
+    }
+    for (std::uint64_t seed = 1; seed < 4; ++seed) {
+        const auto shaped = factory.make(seed);  // a proxy of another shape is in its place, too
+        EXPECT_EQ(shaped->parts().proxy != nullptr, shaped->garment().name() == "skirt");
+    }
+}
+
+TEST(TrainingGarments, ThoseOfProxiesHaveOne) {
+    SceneSettings settings;
+    settings.proxies = true;
+    settings.motions = {"01_03"};
+    settings.garments = proxied_garments();
+    const SceneFactory factory(ModelConfig::variant_named("fast"), settings, 1);
+    ASSERT_EQ(factory.garment_names(), proxied_garments());
+    for (size_t k = 0; k < proxied_garments().size(); ++k) {
+        const auto scene = factory.make_garment(1, "01_01", k);
+        ASSERT_TRUE(scene->parts().proxy) << proxied_garments()[k];
+        EXPECT_LT(scene->parts().proxy->vertex_count(), 1100);
+        EXPECT_GT(scene->garment().vertex_count(), 1800);
+    }
+}
+
 TEST(CarriedAlong, AGarmentMovesWithTheSkinUnderIt) {
     const TriMesh skirt{load_garment_start("skirt_1000").x, load_garment_mesh("skirt_1000").faces};
     const Points skin = Body::load_default().rest();

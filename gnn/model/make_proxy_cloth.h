@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "gnn/model/make_cloth.h"
+#include "gnn/physics/stepper/embedded_stepper.h"
+
+namespace cloth {
+
+struct ProxyClothSettings {
+    ClothSettings proxy;  ///< how the proxy is simulated
+    EmbeddedStepperSettings embedded = with_detail(1);
+    std::shared_ptr<const EngineWeights>
+        detail;             ///< of a network for the fine garment, such as
+                            ///< one trained with `train --proxies`; null: none
+    EngineSettings engine;  ///< that runs it
+
+    static EmbeddedStepperSettings with_detail(int iterations) {
+        EmbeddedStepperSettings settings;
+        settings.detail_iterations = iterations;
+        return settings;
+    }
+};
+
+/// A fine garment that follows a coarse one, and makes its own folds: the proxy is simulated as
+/// make_cloth() does it, and gives the start of the fine garment's own step.
+///
+///     const auto proxy = std::make_shared<const Garment>(make_proxy(shirt, {1000}));
+///     const std::unique_ptr<Stepper> stepper = make_proxy_cloth(shirt, proxy);
+///
+/// Keeps a reference to `fine`. @throws ArgumentError as EmbeddedStepper does
+std::unique_ptr<EmbeddedStepper> make_proxy_cloth(const Garment& fine,
+                                                  std::shared_ptr<const Garment> proxy,
+                                                  const ProxyClothSettings& settings = {});
+
+}  // namespace cloth
