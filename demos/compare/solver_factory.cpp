@@ -251,6 +251,12 @@ std::vector<std::string> networks_in(const std::string& folder) {
     for (const auto& entry :
          std::filesystem::directory_iterator(weights_folder(folder), unreadable))
         if (entry.path().extension() == ".safetensors") names.push_back(entry.path().stem());
+    const auto of_detail = [](const std::string& name) {
+        const std::string suffix = "_detail";
+        return name.size() > suffix.size() &&
+               name.compare(name.size() - suffix.size(), suffix.size(), suffix) == 0;
+    };
+    names.erase(std::remove_if(names.begin(), names.end(), of_detail), names.end());
     std::sort(names.begin(), names.end());
     return names;
 }

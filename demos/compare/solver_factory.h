@@ -81,7 +81,8 @@ struct NetworkName {
     bool as_shipped;     ///< no +
 };
 
-/// The networks whose weights lie in the folder (empty: the committed ones), in alphabetical order.
+/// The networks whose weights lie in the folder (empty: the committed ones), in alphabetical order;
+/// those for the detail of proxies, whose names end in "_detail", are left out.
 std::vector<std::string> networks_in(const std::string& folder);
 
 /// The file of a network's weights. @throws UsageError naming the networks there are

@@ -83,9 +83,19 @@ std::vector<DataSet> data_sets() {
          figures + "proxy.json",
          "OMP_NUM_THREADS=1 build/release/demos/compare --garment tshirt --motion 01_01 --frames 90"
          " --reference-frames 90 --no-video --out OUT --solvers "
-         "quasi-newton,quasi-newton~1000,quasi-newton~tshirt_1000,small+3,small+3~1000,xpbd-40,"
-         "xpbd-40~1000",
+         "default,default~1000,default~tshirt_1000,default~1000+1,default~tshirt_1000+1,"
+         "default~1000+small_detail,default~1000+small_detail+1,xpbd-40,xpbd-40~1000,"
+         "xpbd-40~1000+1",
          "report.json",
+         {},
+         {}},
+        {"detail",
+         figures + "detail.json",
+         "build/release/demos/speed_error --scene all --limbs --frames 30 --relative-to xpbd-40"
+         " --solvers xpbd-40,default,default~1000,default~1000+1,default~1000+2,"
+         "default~1000+small_detail,default~1000+small_detail+1,default~1000+small,"
+         "default~1000+small+1,xpbd-40~1000+1,xpbd-40~1000+small_detail+1 --out OUT",
+         "speed_error.json",
          {},
          {}},
         {"which_solver",

@@ -34,6 +34,7 @@ const Registry& doc_registry() {
          {"small_steps", {"which_solver"}, small_steps_table},
          {"whole_motion", {"whole_motion"}, whole_motion_table},
          {"proxy", {"proxy"}, proxy_table},
+         {"detail", {"detail"}, detail_table},
          {"speed_error", {"speed_error"}, speed_error_table},
          {"stiff", {"stiff"}, stiff_table},
          {"real_time", {"real_time_tshirt", "real_time_tshirt_1000"}, real_time_table},

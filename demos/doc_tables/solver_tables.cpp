@@ -69,6 +69,27 @@ MarkdownTable proxy_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable detail_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver"};
+    for (const char* scene : {"T-shirt", "sheet on a sphere", "hanging sheet"}) {
+        table.heading.push_back(std::string(scene) + ": ms per step, median / 95 %");
+        for (const char* figure : {"mm", "gap", "stretch"}) table.heading.push_back(figure);
+    }
+    for (const DataRow& first : files.at(0).rows("rows")) {
+        if (first.text("/scene") != scenes[0]) continue;
+        table.rows.push_back({first.text("/solver")});
+        for (const char* scene : scenes) {
+            const DataRow row = soft_row(files.at(0), scene, first.text("/solver"));
+            for (const std::string& cell :
+                 {median_and_p95(row), distance_of(row), significant(row.number("/gap_median"), 2),
+                  decimals(row.number("/stretch_p99"), 3)})
+                table.rows.back().push_back(cell);
+        }
+    }
+    return table;
+}
+
 MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
     static const char* const solvers[] = {"bullet-10x2",
                                           "bullet-10x8",

@@ -8,6 +8,8 @@ namespace cloth {
 MarkdownTable whole_motion_table(const std::vector<DataFile>& files);
 /// Solvers and what they do with a proxy, without times.
 MarkdownTable proxy_table(const std::vector<DataFile>& files);
+/// Fine garments over proxies, with and without a step of their own.
+MarkdownTable detail_table(const std::vector<DataFile>& files);
 MarkdownTable speed_error_table(const std::vector<DataFile>& files);
 MarkdownTable which_solver_table(const std::vector<DataFile>& files);
 /// All solvers that those of which_solver_table() are chosen from.

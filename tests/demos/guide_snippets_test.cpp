@@ -20,6 +20,7 @@
 #include "data/files/mesh_io.h"
 #include "data/files/point_cache_reader.h"
 #include "gnn/model/make_cloth.h"
+#include "gnn/model/make_proxy_cloth.h"
 #include "gnn/physics/stepper/embedded_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
@@ -112,6 +113,13 @@ TEST_F(GuideSnippets, SimulateCoarseShowFine) {
     const cloth::StepReport report = stepper.step(boundary, dt, state);  // of the shirt
     EXPECT_TRUE(report.finite);
     EXPECT_LT(state.x.col(1).maxCoeff(), -0.005);
+
+    const std::string file = cloth::asset_path("weights/small_detail.safetensors");
+    cloth::ProxyClothSettings settings;  // one iteration of the fine garment's own step
+    settings.detail = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(file));
+    const auto detailed = cloth::make_proxy_cloth(shirt, proxy, settings);
+    EXPECT_TRUE(detailed->step(boundary, dt, state).finite);
+    EXPECT_LT(state.x.col(1).maxCoeff(), -0.02);
 }
 
 TEST_F(GuideSnippets, PointsOfAnAnimationSystemOfYourOwn) {
