@@ -103,7 +103,8 @@ std::vector<DataSet> data_sets() {
          "build/release/demos/speed_error --scene all --limbs --frames 30 --relative-to xpbd-40"
          " --solvers xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-1s120,"
          "quasi-newton-2s60,quasi-newton-2s120,quasi-newton-3s120,quasi-newton-5s120,"
-         "quasi-newton-2s240,quasi-newton-3s120-bdf2,small,small+2s120,small+3 --out OUT",
+         "quasi-newton-2s240,quasi-newton-3s120-bdf2,default~1000+1,small,small+2s120,small+3"
+         " --out OUT",
          "speed_error.json",
          {},
          {}},
@@ -181,7 +182,7 @@ std::vector<DataSet> data_sets() {
          figures + "clip_times.json",
          "build/release/demos/hard_cases"
          " --motions ../shared/data/motions/validation,../shared/data/motions/train"
-         " --garment tshirt --steppers default,xpbd-40 --no-pictures --out OUT",
+         " --garment tshirt --steppers default,default~1000+1,xpbd-40 --no-pictures --out OUT",
          "hard_cases.json",
          {},
          {}},
