@@ -11,6 +11,7 @@
 #include "data/core/carry_over.h"
 #include "data/core/errors.h"
 #include "gnn/model/make_cloth.h"
+#include "gnn/model/make_proxy_cloth.h"
 #include "gnn/physics/stepper/embedded_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
@@ -212,6 +213,21 @@ TEST_F(SwingingSheet, AProxyTakesOverInMidRun) {
     solver.attach(cloth, fine);
     EXPECT_LT(largest_change(10), 4.0 * usual + 2e-3);
     EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton-3s120");
+    EXPECT_EQ(solver.status().failedSteps, 0);
+}
+
+TEST_F(SwingingSheet, AProxyWithDetailTakesOverInMidRun) {
+    largest_change(30);
+    const double usual = largest_change(2);
+    const auto on_proxy = [](const Garment& garment) -> std::unique_ptr<Stepper> {
+        TriMesh coarse = square_mesh(7);
+        coarse.vertices.rowwise() -= Eigen::RowVector3d(0.5, 0.0, 0.5);
+        return make_proxy_cloth(
+            garment, std::make_shared<const Garment>(carry_over(garment, coarse, "proxy")));
+    };
+    solver.attach(cloth, Garment(*solver.garmentOf(cloth)), on_proxy);
+    EXPECT_LT(largest_change(10), 4.0 * usual + 2e-3);
+    EXPECT_EQ(solver.stepperOf(cloth)->name(), "quasi-newton-3s120~49+quasi-newton-1");
     EXPECT_EQ(solver.status().failedSteps, 0);
 }
 

@@ -238,6 +238,20 @@ TEST(EmbeddedStepper, ANetworkIsHeardWhereIterationsFollowOnlyIfItLowersTheEnerg
     Draped alone(4, with_detail(0), bad);
     const auto middle = [](const Draped& draped) { return draped.state.x.col(0).mean(); };
     EXPECT_GT(middle(alone), middle(without) + 5e-3) << "alone it is taken as it is";
+
+    Draped halved(0, with_detail(0), bad), plain(0);
+    for (int k = 0; k < 4; ++k) {
+        halved.follower.stepper.step(halved.boundary, 0.5 * h, halved.state);
+        plain.follower.stepper.step(plain.boundary, 0.5 * h, plain.state);
+    }
+    EXPECT_NEAR(middle(halved), middle(plain), 1e-3) << "it is not asked for other time steps";
+}
+
+TEST(EmbeddedStepper, IterationsAreLimitedForTheProxyAndItsDetail) {
+    Draped draped(4, with_detail(7));
+    EXPECT_EQ(draped.follower.step(draped.boundary, draped.state).iterations, 5 + 7);
+    EXPECT_TRUE(draped.follower.stepper.set_max_iterations(2));
+    EXPECT_EQ(draped.follower.step(draped.boundary, draped.state).iterations, 2 + 2);
 }
 
 TEST(EmbeddedStepper, DetailStaysWithinAnEdgeOfTheProxy) {

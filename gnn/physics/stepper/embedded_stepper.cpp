@@ -129,6 +129,11 @@ void EmbeddedStepper::prepare(double dt) {
     if (m_detail) m_detail->prepare(dt);
 }
 
+bool EmbeddedStepper::set_max_iterations(int most) {
+    if (m_detail) m_detail->set_max_iterations(most);
+    return m_stepper->set_max_iterations(most) || m_detail;
+}
+
 bool EmbeddedStepper::is_independent() const {
     return m_stepper->is_independent() && (!m_detail || m_detail->is_independent());
 }

@@ -61,8 +61,9 @@ class EmbeddedStepper : public Stepper {
     /// @param fine   a reference is kept
     /// @param proxy  at rest in the same place, such as make_proxy() or carry_over() make it
     /// @param stepper  of the proxy
-    /// @param detail   a network for the fine garment, such as a NetworkStart; null: none. If
-    ///                 iterations follow, it is heard only where it lowers the energy
+    /// @param detail   a network for the fine garment, such as a NetworkStart; null: none. It is
+    ///                 asked in steps of its own length, and if iterations follow, heard only where
+    ///                 it lowers the energy
     /// @throws ArgumentError if a setting is out of range, the meshes are not in the same place,
     ///         only one of the garments has pins or goals, or there is no stepper
     EmbeddedStepper(const Garment& fine, std::shared_ptr<const Garment> proxy,
@@ -80,7 +81,8 @@ class EmbeddedStepper : public Stepper {
     bool is_independent() const override;
     /// Of the proxy's step: what the fine garment takes comes on top.
     bool set_max_ms(double ms) override { return m_stepper->set_max_ms(ms); }
-    bool set_max_iterations(int most) override { return m_stepper->set_max_iterations(most); }
+    /// Of the proxy's step, and of the fine garment's own.
+    bool set_max_iterations(int most) override;
     bool set_most_residual(double most) override { return m_stepper->set_most_residual(most); }
     const std::vector<LimbSet>& ignored_limbs() const override { return m_ignored; }
 

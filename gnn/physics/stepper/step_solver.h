@@ -143,9 +143,10 @@ class StepSolver {
 
     /// Moves `x` (|V| x 3, m), where something else says that the step ends, such as a coarser
     /// garment, on towards the minimum: out of the obstacles, and from the start's prediction if
-    /// there is one. Neither contact projection nor untangling follows. False: it failed, and x is
-    /// as it was.
-    /// @param contacts  whether surface points are those nearest to the state, as in other steps, or
+    /// there is one for steps of this length. Neither contact projection nor untangling follows.
+    /// False: it failed, and x is as it was.
+    /// @param contacts  whether surface points are those nearest to the state, as in other steps,
+    /// or
     ///                  at the end to x: where something moved too far for the former to hold
     bool go_on_from(Points& x, StepEnd contacts, const Boundary& boundary, double dt,
                     const ClothState& state, StepReport& report);
