@@ -2,7 +2,7 @@
 # Installs what is needed, builds it, and compares solvers on the T-shirt: a video and a report.
 # Quick the second time. Further arguments are handed to `compare`, which has more solvers and motions:
 #   demos/run.sh --frames 90 --reference-frames 30 --solvers \
-#     bullet,bullet-fine,xpbd-40,default,quasi-newton,small,hood_fast_own+0,small+0
+#     bullet,bullet-fine,xpbd-40,default,default~tshirt_1000+1,quasi-newton,small,hood_fast_own+0
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -32,7 +32,8 @@ void check_steppers(const std::vector<std::string>& steppers, const SolverSettin
 /// Frames of a case: scaled, at least one; the soak cases last for `soak_frames` if it is not 0.
 int scaled_frames(const HardCase& hard, double scale, int soak_frames = 0);
 
-/// Runs one of the contest's steppers, from each start with a solver of its own. The reference is left out where it would take hours.
+/// Runs one of the contest's steppers, from each start with a solver of its own. The reference is
+/// left out where it would take hours.
 /// @param progress  done, of all, what
 HardResult run_stepper(const HardContest& contest, const HardScene& scene,
                        const std::string& stepper,

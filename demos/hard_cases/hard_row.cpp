@@ -177,10 +177,10 @@ std::string markdown(const std::vector<HardRow>& rows) {
                 table += " |";
                 continue;
             }
-            table += !row->held || *row->held
-                         ? " " + verdict(*row)
-                         : " frame " + std::to_string(*row->first_failed_frame) + ": " +
-                               row->failure;
+            table +=
+                !row->held || *row->held
+                    ? " " + verdict(*row)
+                    : " frame " + std::to_string(*row->first_failed_frame) + ": " + row->failure;
             if (row->held && row->starts > 1) table += " (held from " + starts_held(*row) + ")";
             table += " |";
         }

@@ -17,8 +17,8 @@ class HardReport {
 
     /// A row of the same case, stepper and number of frames, from at least so many starts; null:
     /// there is none.
-    const HardRow* find(const std::string& hard_case, const std::string& stepper,
-                        int frames_wanted, int starts = 1) const;
+    const HardRow* find(const std::string& hard_case, const std::string& stepper, int frames_wanted,
+                        int starts = 1) const;
     /// Puts a row in the place of one of the same case and stepper, or at the end.
     void add(const HardRow& row);
 

@@ -36,7 +36,8 @@ TEST(HardCaseOptions, AllCasesByDefault) {
 TEST(HardCaseOptions, AreRead) {
     const HardCaseOptions options = parse_hard_case_options(
         {"--cases", "teleport,needles", "--steppers", "fast", "--frames-scale", "0.5", "--soak",
-         "--starts", "8", "--no-pictures", "--markdown", "--resume", "--threads", "2", "--out", "there"});
+         "--starts", "8", "--no-pictures", "--markdown", "--resume", "--threads", "2", "--out",
+         "there"});
     EXPECT_EQ(options.cases, (std::vector<std::string>{"teleport", "needles"}));
     EXPECT_EQ(options.steppers, std::vector<std::string>{"fast"});
     EXPECT_EQ(options.frames_scale, 0.5);

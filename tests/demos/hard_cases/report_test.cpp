@@ -151,7 +151,8 @@ TEST(HardRun, BeginsAtTheStartThatItIsTold) {
     int held = 0;
     for (int start = 0; start < 20; ++start) {
         SpoilingStepper still(100, [](ClothState&) { return true; });
-        const HardRun run = run_hard_case(hard, scene, still, {}, [](int) {}, start);
+        const HardRun run = run_hard_case(
+            hard, scene, still, {}, [](int) {}, start);
         EXPECT_EQ(run.held(), scene.start_from(start).x(0, 0) <= at_first);
         held += run.held() ? 1 : 0;
     }
