@@ -108,8 +108,6 @@ MarkdownTable speed_error_table(const std::vector<DataFile>& files) {
                                           "quasi-newton-10",
                                           "quasi-newton",
                                           "quasi-newton-30",
-                                          "quasi-newton-2s60",
-                                          "quasi-newton-3s120",
                                           "quasi-newton-3-bdf2",
                                           "quasi-newton-10-bdf2",
                                           "quasi-newton-bdf2",
