@@ -5,6 +5,7 @@
 //           --iterations 110000 --out out/baseline
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdlib>
 #include <iostream>
 #include <map>
@@ -164,6 +165,13 @@ Options parse(int count, char** arguments) {
         settings.scenes.garment_share = 1.0;
         settings.scenes.garments = cloth::proxied_garments();
     }
+    const std::vector<std::string> proxied = cloth::proxied_garments();
+    if (settings.scenes.proxies && !garment.empty() &&
+        std::find(proxied.begin(), proxied.end(), garment) == proxied.end())
+        throw cloth::ArgumentError(
+            "--garment " + garment,
+            "has no coarse garment of 1,000 vertices that could be its proxy",
+            "take another of the wardrobe, or leave --proxies out");
     if (!garment.empty()) {
         cloth::load_garment_start(garment);  // throws before hours are spent on sheets alone
         settings.scenes.garments = {garment};
