@@ -156,7 +156,7 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "time is short, and XPBD lacks what you need: limbs, `maxMs`, reactions through anchors"},
         {"default~1000+1",
          "a fine garment has to be cheap: a coarse one is simulated, which carries it, and one "
-         "iteration of its own makes its folds (`make_proxy_cloth()`)"},
+         "iteration of its own takes away the stretch of the coarse shape (`make_proxy_cloth()`)"},
         {"quasi-newton",
          "each step should be solved well: whole steps, iterations for as long as they gain"},
         {"small", "the learned solver: a network, then the iterations of `quasi-newton`"}};

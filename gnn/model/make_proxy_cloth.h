@@ -22,8 +22,8 @@ struct ProxyClothSettings {
     }
 };
 
-/// A fine garment that follows a coarse one, and makes its own folds: the proxy is simulated as
-/// make_cloth() does it, and gives the start of the fine garment's own step.
+/// A fine garment that follows a coarse one with a step of its own: the proxy is simulated as
+/// make_cloth() does it, and gives the start of that step.
 ///
 ///     const auto proxy = std::make_shared<const Garment>(make_proxy(shirt, {1000}));
 ///     const std::unique_ptr<Stepper> stepper = make_proxy_cloth(shirt, proxy);

@@ -23,8 +23,8 @@ struct EmbeddedStepperSettings {
                           ///< false: vertices alone, and max_penetration is theirs. That costs less
     ProximitySettings proximity;  ///< of the fine garment
     /// Iterations of the fine garment's own step, from where the proxy shows it, 0 to 1000. The
-    /// first takes away the stretch that the proxy's shape brings, and makes folds that are finer
-    /// than the proxy's edges. 0: none, unless there is a network.
+    /// first takes away most of the stretch that the proxy's shape brings; folds that are finer
+    /// than the proxy's edges take many. 0: none, unless there is a network.
     int detail_iterations = 0;
 };
 
