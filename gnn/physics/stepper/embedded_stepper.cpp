@@ -160,14 +160,17 @@ Points EmbeddedStepper::of_proxy(const Points& fine) const {
 }
 
 /// The outside of the fine garment, and as the proxy has it. Both have the obstacles' hierarchies
-/// in common.
+/// in common; the obstacles themselves, which are large, are the proxy's until it has stepped.
 void EmbeddedStepper::take_boundary(const Boundary& boundary) {
     m_outside = boundary;
     if (!m_outside.trees) {
         m_outside.trees = m_trees;
         m_trees->begin_step();
     }
+    std::vector<Obstacle> obstacles = std::move(m_outside.obstacles);
+    m_outside.obstacles.clear();
     m_proxy_boundary = m_outside;
+    m_proxy_boundary.obstacles = std::move(obstacles);
     m_proxy_boundary.pin_targets.setZero(static_cast<Eigen::Index>(m_pins.size()), 3);
     for (size_t k = 0; k < m_pins.size(); ++k)
         for (size_t c = 0; c < 3; ++c)
@@ -192,6 +195,7 @@ StepReport EmbeddedStepper::step_proxy(const Boundary& boundary, double dt,
     ClothState next = m_state;
     next.time = state.time;
     StepReport report = m_stepper->step(m_proxy_boundary, dt, next);
+    m_outside.obstacles = std::move(m_proxy_boundary.obstacles);
     if (!report.finite) return report;
     m_state = std::move(next);
     m_offset *= m_settings.fade > 0.0 ? std::exp(-dt / m_settings.fade) : 0.0;
