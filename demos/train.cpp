@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
@@ -75,10 +76,29 @@ const RecipeOption recipe_options[] = {
      [](Recipe& r, double v) { r.max_rollout = static_cast<int>(v); }},
 };
 
+/// @throws ArgumentError if one is not found or, with proxies, has none: before hours are spent on
+///         the others alone
+void choose_garments(const std::vector<std::string>& names, cloth::SceneSettings& scenes) {
+    const std::vector<std::string> proxied = cloth::proxied_garments();
+    if (scenes.proxies) {
+        scenes.garment_share = 1.0;
+        scenes.garments = proxied;
+    }
+    for (const std::string& name : names) {
+        if (scenes.proxies && std::find(proxied.begin(), proxied.end(), name) == proxied.end())
+            throw cloth::ArgumentError(
+                "--garment " + name,
+                "has no coarse garment of 1,000 vertices that could be its proxy",
+                "take another of the wardrobe, or leave --proxies out");
+        cloth::load_garment_start(name);
+    }
+    if (!names.empty()) scenes.garments = names;
+}
+
 Options parse(int count, char** arguments) {
     Options options;
     cloth::TrainerSettings& settings = options.settings;
-    std::string garment;
+    std::vector<std::string> garments;
     CLI::App app("train: trains a cloth network on the incremental potential, without ground truth",
                  "train");
     app.option_defaults()->take_last();
@@ -112,8 +132,10 @@ Options parse(int count, char** arguments) {
         "WORLD_SIZE, MASTER_ADDR and MASTER_PORT instead (1)");
     add("--pool", settings.pool, "N", "scenes trained on in turn, for each of the batch (40)");
     add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
-    add("--garment", garment, "NAME",
-        "train on this garment alone: a name of data/assets/garments, or a file of yours");
+    add("--garment", garments, "A,B,...",
+        "train on these garments alone: names of data/assets/garments, or files of yours")
+        ->delimiter(',')
+        ->take_all();
     app.add_flag("--proxies", settings.scenes.proxies,
                  "steps start where a coarse garment of the wardrobe shows the fine one: the "
                  "network learns its detail. Garments that have such a one, no sheets");
@@ -161,21 +183,7 @@ Options parse(int count, char** arguments) {
     } catch (const CLI::ParseError& error) {
         std::exit(app.exit(error));  // help, or what is wrong
     }
-    if (settings.scenes.proxies) {
-        settings.scenes.garment_share = 1.0;
-        settings.scenes.garments = cloth::proxied_garments();
-    }
-    const std::vector<std::string> proxied = cloth::proxied_garments();
-    if (settings.scenes.proxies && !garment.empty() &&
-        std::find(proxied.begin(), proxied.end(), garment) == proxied.end())
-        throw cloth::ArgumentError(
-            "--garment " + garment,
-            "has no coarse garment of 1,000 vertices that could be its proxy",
-            "take another of the wardrobe, or leave --proxies out");
-    if (!garment.empty()) {
-        cloth::load_garment_start(garment);  // throws before hours are spent on sheets alone
-        settings.scenes.garments = {garment};
-    }
+    choose_garments(garments, settings.scenes);
     return options;
 }
 
