@@ -136,6 +136,15 @@ class Stepper {
         return false;
     }
 
+    /// Whether contact projection keeps edges and faces out of obstacles from now on, as it does at
+    /// first, or vertices alone, which costs less: for a garment that is not shown. max_penetration
+    /// is then that of vertices.
+    /// @return  false: this stepper keeps to what it does
+    virtual bool set_surface_projection(bool on) {
+        (void)on;
+        return false;
+    }
+
     /// Forces of the fabric alone, stretch and bending, at x (|V| x 3, m), on pins too (|V| x 3,
     /// N); they sum to zero. What they leave of a step's change of momentum came from outside.
     /// @return  false, `forces` untouched: this stepper does not know

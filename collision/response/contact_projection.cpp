@@ -55,7 +55,7 @@ ResolveReport ContactProjection::resolve(Proximity& proximity, const Boundary& b
     m_rows = m_free;
     report.iterations = push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x,
                                       contacts, &report.moved);
-    if (m_settings.iterations > 0)
+    if (m_surface && m_settings.iterations > 0)
         resolve_surface(proximity, boundary, distance, x, contacts, report);
     report.max_depth_after = depth_of_free(contacts);
     return report;

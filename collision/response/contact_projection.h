@@ -43,6 +43,9 @@ class ContactProjection {
     explicit ContactProjection(const Garment& garment,
                                const ContactProjectionSettings& settings = {});
 
+    /// Whether edges and faces are kept out from now on, as at first, if the settings say so.
+    void set_surface(bool on) { m_surface = on; }
+
     /// @param distance  of vertices from the surfaces at t + dt (m, small: 0 to 1e-3)
     /// @param x         |V| x 3 (m), the pinned vertices in place
     /// @param contacts  the nearest points of the resulting `x`, chosen at t + dt (without
@@ -62,6 +65,7 @@ class ContactProjection {
     double depth_of_free(const SurfaceContacts& contacts) const;
 
     ContactProjectionSettings m_settings;
+    bool m_surface = true;
     SurfaceSamples m_samples;
     PinchSides m_sides;
     PlanePush m_push;

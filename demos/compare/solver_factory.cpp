@@ -115,6 +115,7 @@ class WithLimbs : public Stepper {
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override {
         return m_inner->step(m_limbs.filter(boundary, dt, state), dt, state);
     }
+    bool set_surface_projection(bool on) override { return m_inner->set_surface_projection(on); }
     bool internal_forces(const Points& x, Points& forces) const override {
         return m_inner->internal_forces(x, forces);
     }

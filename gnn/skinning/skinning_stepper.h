@@ -48,6 +48,10 @@ class SkinningStepper : public Stepper {
     double fixed_dt() const override { return m_predictor.config().dt; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
     bool is_independent() const override { return true; }
+    bool set_surface_projection(bool on) override {
+        m_projection.set_surface(on);
+        return true;
+    }
 
  private:
     const Garment* m_garment;

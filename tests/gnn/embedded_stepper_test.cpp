@@ -368,6 +368,34 @@ TEST(EmbeddedStepper, VerticesAloneAreKeptOutIfAsked) {
     EXPECT_GT(deepest, deepest_whole) << "of edges and faces";
 }
 
+/// Keeps what it is told.
+class Told : public Stepper {
+ public:
+    explicit Told(bool& surface) : m_surface(&surface) {}
+    std::string name() const override { return "told"; }
+    StepReport step(const Boundary&, double, ClothState&) override { return {}; }
+    bool set_surface_projection(bool on) override {
+        *m_surface = on;
+        return true;
+    }
+
+ private:
+    bool* m_surface;
+};
+
+TEST(EmbeddedStepper, TheProxysFacesAreKeptOutUnlessAskedNotTo) {
+    const Follower follower;
+    for (const bool asked : {true, false}) {
+        EmbeddedStepperSettings settings;
+        settings.proxy_surface = asked;
+        bool surface = !asked;
+        const EmbeddedStepper stepper(follower.fine, follower.proxy,
+                                      std::make_unique<Told>(surface), settings);
+        EXPECT_EQ(surface, asked);
+    }
+    EXPECT_TRUE(EmbeddedStepperSettings().proxy_surface);
+}
+
 TEST(EmbeddedStepper, IgnoredSolidsArePassedThroughAndReported) {
     Follower follower;
     ClothState state = ClothState::at_rest(follower.fine);

@@ -264,6 +264,21 @@ TEST_P(StepperContract, NothingEndsInsideAnObstacle) {
     }
 }
 
+TEST_P(StepperContract, WithoutSurfaceProjectionVerticesStayOutside) {
+    CLOTH_SKIP_UNLESS_PROMISED(Promise::stays_outside);
+    SolverScene scene = sheet_on_sphere(9);
+    const std::unique_ptr<Stepper> stepper = make(scene.garment);
+    if (!stepper->set_surface_projection(false)) GTEST_SKIP() << "it keeps to what it does";
+    for (int k = 0; k < 20; ++k) {
+        const StepReport report = stepper->step(scene.boundary, dt(*stepper), scene.state);
+        ASSERT_TRUE(report.finite) << "step " << k;
+        VectorX distance;
+        Proximity().signed_distance(scene.state.x, scene.boundary, StepEnd::end, distance);
+        EXPECT_GE(distance.minCoeff(), -1e-3) << "step " << k;
+        EXPECT_NEAR(report.max_penetration, std::max(0.0, -distance.minCoeff()), 1e-9) << k;
+    }
+}
+
 TEST_P(StepperContract, WildInputGivesFiniteOutputOrIsRefused) {
     using Spoil = std::function<void(SolverScene&)>;
     const std::map<std::string, Spoil> wild = {

@@ -129,6 +129,10 @@ class ClothStepper : public Stepper {
     /// Newton's method takes no notice (false).
     bool set_max_iterations(int most) override;
     bool set_most_residual(double most) override;
+    bool set_surface_projection(bool on) override {
+        m_solver->set_surface_projection(on);
+        return true;
+    }
     bool is_independent() const override { return m_solver->is_independent(); }
     bool internal_forces(const Points& x, Points& forces) const override;
     std::optional<double> internal_energy(const Points& x) const override {

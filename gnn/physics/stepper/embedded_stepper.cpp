@@ -85,6 +85,7 @@ EmbeddedStepper::EmbeddedStepper(const Garment& fine, std::shared_ptr<const Garm
         throw ArgumentError("EmbeddedStepper of " + fine.name(),
                             "only one of the garment and its proxy has pins, or goals",
                             "make the proxy by make_proxy() or carry_over()");
+    m_stepper->set_surface_projection(settings.proxy_surface);
     find_pins();
 }
 
@@ -297,11 +298,14 @@ void EmbeddedStepper::show(const Boundary& boundary, double dt, ClothState& stat
 
 /// Vertices that pass over limbs, and are inside when nothing is passed over, are inside of these.
 void EmbeddedStepper::measure_ignored(const Boundary& boundary, StepReport& report) {
-    VectorX distance;
-    m_proximity.signed_distance(m_x, boundary, StepEnd::end, distance);
-    for (size_t i = 0; i < m_ignored.size(); ++i) {
-        const double depth = -distance[static_cast<Eigen::Index>(i)];
-        if (m_ignored[i] == 0 || m_fine->is_pinned()[i] || !(depth > 0.0)) continue;
+    if (boundary.obstacles.empty()) return;
+    m_rows.clear();
+    for (size_t i = 0; i < m_ignored.size(); ++i)
+        if (m_ignored[i] != 0 && !m_fine->is_pinned()[i]) m_rows.push_back(static_cast<int>(i));
+    m_proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end);
+    for (const int i : m_rows) {
+        const double depth = -m_contacts.distance[i];
+        if (!(depth > 0.0)) continue;
         ++report.vertices_in_ignored_limbs;
         report.max_ignored_depth = std::max(report.max_ignored_depth, depth);
     }

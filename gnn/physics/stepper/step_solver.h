@@ -132,6 +132,8 @@ class StepSolver {
     void set_deadline(const Deadline& deadline) { set_deadline(deadline, deadline); }
     /// Of quasi-Newton, where limits ask for more, 1 or more; a small step takes one at least.
     void set_max_iterations(int most) { m_max_iterations = std::max(1, most); }
+    /// See Stepper::set_surface_projection().
+    void set_surface_projection(bool on) { m_projection.set_surface(on); }
     /// See Stepper::set_most_residual(); of quasi-Newton.
     void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far

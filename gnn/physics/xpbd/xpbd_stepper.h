@@ -56,6 +56,10 @@ class XpbdStepper : public Stepper {
     std::string name() const override;
     bool is_independent() const override { return true; }
     StepReport step(const Boundary& boundary, double dt, ClothState& state) override;
+    bool set_surface_projection(bool on) override {
+        m_resolver.set_surface(on);
+        return true;
+    }
 
  private:
     void find_contacts(const Boundary& boundary, const ClothState& state);

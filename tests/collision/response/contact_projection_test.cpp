@@ -89,6 +89,22 @@ TEST_P(CoarseSheet, IsLiftedOffWhatIsSmallerThanItsTriangles) {
 INSTANTIATE_TEST_SUITE_P(Bumps, CoarseSheet, ::testing::ValuesIn(bumps()),
                          [](const auto& bump) { return bump.param.name; });
 
+TEST(ContactProjection, VerticesAloneAreKeptOutIfAsked) {
+    const Garment garment = sheet();
+    const Boundary boundary = boundary_of({bumps()[2].obstacle});
+    Proximity proximity;
+    SurfaceContacts contacts;
+    ContactProjection projection(garment);
+    projection.set_surface(false);
+    Points x = garment.rest().vertices;
+    const ResolveReport report = projection.resolve(proximity, boundary, distance, x, contacts);
+    EXPECT_LE(report.deepest_after(), 0.0);
+    EXPECT_GT(oracle_depth(garment, x, boundary), 1e-3);
+    projection.set_surface(true);
+    projection.resolve(proximity, boundary, distance, x, contacts);
+    EXPECT_LT(oracle_depth(garment, x, boundary), 1e-3);
+}
+
 TEST(ContactProjection, TheReportAgreesWithBruteForce) {
     const Garment garment = sheet(200);
     TriMesh ball = roughened(icosphere(3), 0.02, 5);
