@@ -53,6 +53,35 @@ DataSet real_time(const std::string& garment) {
             {}};
 }
 
+/// What networks bring over a proxy, on one garment.
+DataSet learned(const std::string& garment) {
+    const std::string name = "learned_" + garment;
+    return {name,
+            figures + name + ".json",
+            "build/release/demos/speed_error --garment " + garment +
+                " --limbs --frames 30 --relative-to quasi-newton-10 --solvers xpbd-40,"
+                "quasi-newton-10,default,small+3,quasi-newton-2s60~1000,small+3~1000,small+3~700,"
+                "hood_fast_own+0,hood_fast_coarse+0~1000,hood_fast_coarse+0~1500 --out OUT",
+            "speed_error.json",
+            {},
+            {}};
+}
+
+/// Networks by themselves, on the clips that they were not trained on.
+DataSet alone(const std::string& garment) {
+    const std::string name = "alone_" + garment;
+    return {
+        name,
+        figures + name + ".json",
+        "build/release/demos/hard_cases --motions ../shared/data/motions/validation --garment " +
+            garment +
+            " --steppers hood_fast_own+0,hood_fast_own+0~1000,hood_fast_coarse+0~1000,"
+            "hood_fast_coarse+0~1500,small+3~1000,small+3~1500,xpbd-40 --no-pictures --out OUT",
+        "hard_cases.json",
+        {},
+        {}};
+}
+
 DataSet motions(const std::string& name, const std::string& options) {
     return {name,
             figures + name + ".json",
@@ -69,6 +98,12 @@ DataSet motions(const std::string& name, const std::string& options) {
 
 std::vector<DataSet> data_sets() {
     return {
+        learned("tshirt"),
+        learned("pants"),
+        learned("dress"),
+        alone("tshirt"),
+        alone("pants"),
+        alone("dress"),
         {"whole_motion",
          figures + "whole_motion.json",
          "build/release/demos/compare --garment tshirt --motion 01_01 --frames 0"
@@ -103,7 +138,8 @@ std::vector<DataSet> data_sets() {
          "build/release/demos/speed_error --scene all --limbs --frames 30 --relative-to xpbd-40"
          " --solvers xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-1s120,"
          "quasi-newton-2s60,quasi-newton-2s120,quasi-newton-3s120,quasi-newton-5s120,"
-         "quasi-newton-2s240,quasi-newton-3s120-bdf2,default~1000+1,small,small+2s120,small+3"
+         "quasi-newton-2s240,quasi-newton-3s120-bdf2,default~1000+1,small+3~1000,small,small+2s120,"
+         "small+3"
          " --out OUT",
          "speed_error.json",
          {},

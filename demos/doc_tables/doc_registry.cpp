@@ -35,6 +35,8 @@ const Registry& doc_registry() {
          {"whole_motion", {"whole_motion"}, whole_motion_table},
          {"proxy", {"proxy"}, proxy_table},
          {"detail", {"detail"}, detail_table},
+         {"learned", {"learned_tshirt", "learned_pants", "learned_dress"}, learned_table},
+         {"alone", {"alone_tshirt", "alone_pants", "alone_dress"}, alone_table},
          {"speed_error", {"speed_error"}, speed_error_table},
          {"stiff", {"stiff"}, stiff_table},
          {"real_time", {"real_time_tshirt", "real_time_tshirt_1000"}, real_time_table},

@@ -110,6 +110,37 @@ MarkdownTable motions_table(const std::vector<DataFile>& files) {
     return table;
 }
 
+MarkdownTable alone_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver"};
+    const char* const garments[] = {"T-shirt", "pants", "dress"};
+    for (const char* garment : garments) {
+        table.heading.push_back(std::string(garment) + ": clips held");
+        for (const char* figure :
+             {"stretch in each clip's worst frame", "deepest vertex inside (mm)", "ms"})
+            table.heading.push_back(figure);
+    }
+    for (const std::string& stepper : names_of(files.at(0).rows("rows"), "/stepper")) {
+        table.rows.push_back({stepper});
+        for (const DataFile& file : files) {
+            std::string stretch;
+            std::vector<double> ms;
+            const std::vector<DataRow> rows = rows_of(file, stepper);
+            for (const DataRow& row : rows) {
+                stretch += (stretch.empty() ? "" : " / ") + decimals(row.number("/stretch_p99"), 2);
+                ms.push_back(row.number("/ms_median"));
+            }
+            for (const std::string& cell :
+                 {count_of(rows, [](const DataRow& row) { return row.truth("/held"); }) + " of " +
+                      std::to_string(rows.size()),
+                  stretch, decimals(highest(rows, "/penetration_max_mm"), 2),
+                  significant(median(ms), 2)})
+                table.rows.back().push_back(cell);
+        }
+    }
+    return table;
+}
+
 MarkdownTable clip_times_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"solver",

@@ -11,6 +11,7 @@ MarkdownTable starts_table(const std::vector<DataFile>& files);
 /// @param files  with limbs, and as one surface
 MarkdownTable motions_table(const std::vector<DataFile>& files);
 /// How evenly time is spent, clip by clip.
+MarkdownTable alone_table(const std::vector<DataFile>& files);
 MarkdownTable clip_times_table(const std::vector<DataFile>& files);
 
 /// Reports of `bullet_scenes`: scenes of our own, and those of Bullet's demos.

@@ -157,6 +157,8 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
         {"default~1000+1",
          "a fine garment has to be cheap: a coarse one is simulated, which carries it, and one "
          "iteration of its own takes away the stretch of the coarse shape (`make_proxy_cloth()`)"},
+        {"small+3~1000",
+         "the least time for a fine garment: a network and three iterations step the coarse one"},
         {"quasi-newton",
          "each step should be solved well: whole steps, iterations for as long as they gain"},
         {"small", "the learned solver: a network, then the iterations of `quasi-newton`"}};
@@ -233,6 +235,31 @@ MarkdownTable real_time_table(const std::vector<DataFile>& files) {
             cells.push_back(distance_of(row));
         }
         table.rows.push_back(cells);
+    }
+    return table;
+}
+
+MarkdownTable learned_table(const std::vector<DataFile>& files) {
+    MarkdownTable table;
+    table.heading = {"solver"};
+    const char* const garments[] = {"T-shirt", "pants", "dress"};
+    for (size_t k = 0; k < files.size(); ++k) {
+        const double vertices = files[k].rows("scenes").at(0).number("/vertices");
+        table.heading.push_back(std::string(garments[k]) + " of " + decimals(vertices, 0) +
+                                " vertices: ms per step, median / 95 %");
+        for (const char* figure : {"ratio", "mm", "gap", "stretch"})
+            table.heading.push_back(figure);
+    }
+    for (const DataRow& first : files.at(0).rows("rows")) {
+        table.rows.push_back({first.text("/solver")});
+        for (const DataFile& file : files) {
+            const DataRow row = file.row("rows", {{"solver", first.text("/solver")}});
+            for (const std::string& cell :
+                 {median_and_p95(row), significant(row.number("/ms_ratio"), 2), distance_of(row),
+                  significant(row.number("/gap_median"), 2),
+                  decimals(row.number("/stretch_p99"), 3)})
+                table.rows.back().push_back(cell);
+        }
     }
     return table;
 }
