@@ -38,60 +38,52 @@ std::string benchmark_command(const std::string& program) {
            " --benchmark_out_format=json --benchmark_out=OUT/report.json";
 }
 
+/// The report of a program as it writes it.
+DataSet report_of(const std::string& name, const std::string& command, const std::string& report) {
+    return {name, figures + name + ".json", command, report, {}, {}};
+}
+
 /// Steps of 1/60 s, one second of them.
 DataSet real_time(const std::string& garment) {
-    const std::string name = "real_time_" + garment;
-    return {name,
-            figures + name + ".json",
-            "build/release/demos/speed_error --garment " + garment +
-                " --rate 60 --frames 60 --relative-to xpbd-20 --solvers"
-                " bullet-fine,xpbd-20,default,default@16,default@8,quasi-newton-3,quasi-newton-10,"
-                "quasi-newton,quasi-newton@16,quasi-newton@8,quasi-newton-50x4,quasi-newton-50x16 "
-                "--out OUT",
-            "speed_error.json",
-            {},
-            {}};
+    return report_of(
+        "real_time_" + garment,
+        "build/release/demos/speed_error --garment " + garment +
+            " --rate 60 --frames 60 --relative-to xpbd-20 --solvers"
+            " bullet-fine,xpbd-20,default,default@16,default@8,quasi-newton-3,quasi-newton-10,"
+            "quasi-newton,quasi-newton@16,quasi-newton@8,quasi-newton-50x4,quasi-newton-50x16 "
+            "--out OUT",
+        "speed_error.json");
 }
 
 /// What networks bring over a proxy, on one garment.
 DataSet learned(const std::string& garment) {
-    const std::string name = "learned_" + garment;
-    return {name,
-            figures + name + ".json",
-            "build/release/demos/speed_error --garment " + garment +
-                " --limbs --frames 30 --relative-to quasi-newton-10 --solvers xpbd-40,"
-                "quasi-newton-10,default,small+3,quasi-newton-2s60~1000,small+3~1000,small+3~700,"
-                "hood_fast_own+0,hood_fast_coarse+0~1000,hood_fast_coarse+0~1500 --out OUT",
-            "speed_error.json",
-            {},
-            {}};
+    return report_of(
+        "learned_" + garment,
+        "build/release/demos/speed_error --garment " + garment +
+            " --limbs --frames 30 --relative-to quasi-newton-10 --solvers xpbd-40,"
+            "quasi-newton-10,default,small+3,quasi-newton-2s60~1000,small+3~1000,small+3~700,"
+            "hood_fast_own+0,hood_fast_coarse+0~1000,hood_fast_coarse+0~1500 --out OUT",
+        "speed_error.json");
 }
 
 /// Networks by themselves, on the clips that they were not trained on.
 DataSet alone(const std::string& garment) {
-    const std::string name = "alone_" + garment;
-    return {
-        name,
-        figures + name + ".json",
+    return report_of(
+        "alone_" + garment,
         "build/release/demos/hard_cases --motions ../shared/data/motions/validation --garment " +
             garment +
             " --steppers hood_fast_own+0,hood_fast_own+0~1000,hood_fast_coarse+0~1000,"
             "hood_fast_coarse+0~1500,small+3~1000,small+3~1500,xpbd-40 --no-pictures --out OUT",
-        "hard_cases.json",
-        {},
-        {}};
+        "hard_cases.json");
 }
 
 DataSet motions(const std::string& name, const std::string& options) {
-    return {name,
-            figures + name + ".json",
-            "build/release/demos/hard_cases"
-            " --motions ../shared/data/motions/validation,../shared/data/motions/train"
-            " --steppers reference,quasi-newton,small,quasi-newton-3s120" +
-                options + " --no-pictures --out OUT",
-            "hard_cases.json",
-            {},
-            {}};
+    return report_of(name,
+                     "build/release/demos/hard_cases"
+                     " --motions ../shared/data/motions/validation,../shared/data/motions/train"
+                     " --steppers reference,quasi-newton,small,quasi-newton-3s120" +
+                         options + " --no-pictures --out OUT",
+                     "hard_cases.json");
 }
 
 }  // namespace

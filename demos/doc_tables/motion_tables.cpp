@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "demos/compare/statistics.h"
+#include "demos/doc_tables/solver_cells.h"
 
 namespace cloth {
 
@@ -113,8 +114,7 @@ MarkdownTable motions_table(const std::vector<DataFile>& files) {
 MarkdownTable alone_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"solver"};
-    const char* const garments[] = {"T-shirt", "pants", "dress"};
-    for (const char* garment : garments) {
+    for (const char* garment : garments_over_proxies) {
         table.heading.push_back(std::string(garment) + ": clips held");
         for (const char* figure :
              {"stretch in each clip's worst frame", "deepest vertex inside (mm)", "ms"})

@@ -10,8 +10,9 @@ MarkdownTable hard_cases_table(const std::vector<DataFile>& files);
 MarkdownTable starts_table(const std::vector<DataFile>& files);
 /// @param files  with limbs, and as one surface
 MarkdownTable motions_table(const std::vector<DataFile>& files);
-/// How evenly time is spent, clip by clip.
+/// Networks alone, beside others. @param files  of each of garments_over_proxies
 MarkdownTable alone_table(const std::vector<DataFile>& files);
+/// How evenly time is spent, clip by clip.
 MarkdownTable clip_times_table(const std::vector<DataFile>& files);
 
 /// Reports of `bullet_scenes`: scenes of our own, and those of Bullet's demos.

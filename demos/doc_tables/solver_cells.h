@@ -1,10 +1,14 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "demos/doc_tables/data_file.h"
 
 namespace cloth {
+
+/// What the tables `learned` and `alone` measure, in the order of their files.
+constexpr std::array<const char*, 3> garments_over_proxies = {"T-shirt", "pants", "dress"};
 
 /// A distance in mm, to the millimetre, below 10 to a tenth of it.
 std::string millimetres(double value);

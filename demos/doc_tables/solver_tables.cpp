@@ -242,11 +242,10 @@ MarkdownTable real_time_table(const std::vector<DataFile>& files) {
 MarkdownTable learned_table(const std::vector<DataFile>& files) {
     MarkdownTable table;
     table.heading = {"solver"};
-    const char* const garments[] = {"T-shirt", "pants", "dress"};
     for (size_t k = 0; k < files.size(); ++k) {
         const double vertices = files[k].rows("scenes").at(0).number("/vertices");
-        table.heading.push_back(std::string(garments[k]) + " of " + decimals(vertices, 0) +
-                                " vertices: ms per step, median / 95 %");
+        table.heading.push_back(std::string(garments_over_proxies.at(k)) + " of " +
+                                decimals(vertices, 0) + " vertices: ms per step, median / 95 %");
         for (const char* figure : {"ratio", "mm", "gap", "stretch"})
             table.heading.push_back(figure);
     }

@@ -17,6 +17,7 @@ MarkdownTable small_steps_table(const std::vector<DataFile>& files);
 /// Cotton as it is measured.
 MarkdownTable stiff_table(const std::vector<DataFile>& files);
 /// Median, 95 % and longest of the steps; a garment in each file, the same solvers in each.
+/// Networks over proxies. @param files  of each of garments_over_proxies
 MarkdownTable learned_table(const std::vector<DataFile>& files);
 MarkdownTable real_time_table(const std::vector<DataFile>& files);
 MarkdownTable bfloat16_rollout_table(const std::vector<DataFile>& files);

@@ -21,8 +21,8 @@ struct EmbeddedStepperSettings {
                           ///< fades to a third (s), 0 to 10; 0: at once
     bool surface = true;  ///< edges and faces of the fine garment are kept out of obstacles, too;
                           ///< false: vertices alone, and max_penetration is theirs. That costs less
-    /// The same for the proxy, which is not shown. Without, a step costs a tenth less, and what is
-    /// fast and thin gets through more often.
+    /// The same for the proxy, which is not shown. Without, a step costs less, and what is fast and
+    /// thin gets through more often.
     bool proxy_surface = true;
     ProximitySettings proximity;  ///< of the fine garment
     /// Iterations of the fine garment's own step, from where the proxy shows it, 0 to 1000. The
