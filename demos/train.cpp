@@ -27,6 +27,7 @@ struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "kicks", loss;
     int width = 32, levels = 2, nice = 0;
+    double rate = 30.0;  ///< 1/s
     std::optional<int> steps, sampled_edges, batch;
     int processes = 1;
     bool force_features = true, resume = false;
@@ -117,6 +118,7 @@ Options parse(int count, char** arguments) {
         "neighbours that a vertex hears in a message passing step, 1 to 32, of variants that "
         "sample "
         "(4)");
+    add("--rate", options.rate, "R", "steps a second that the network is for (30)");
     add("--force-features", options.force_features, "0|1",
         "forces at x_t and at the guess as input (1)");
     add("--recipe", options.recipe, "NAME",
@@ -208,6 +210,8 @@ cloth::TrainerSettings make_settings(const Options& options, int processes) {
     settings.batch = options.batch.value_or(processes);
     settings.model = model_config(options);
     settings.model.width = options.width;
+    cloth::check_range("--rate", options.rate, 1.0, 10000.0);
+    settings.model.dt = 1.0 / options.rate;
     settings.model.features.force_features = options.force_features;
     settings.model = cloth::ModelConfig::from_json(settings.model.to_json(), "command line");
     settings.recipe = cloth::Recipe::named(options.recipe, options.width);

@@ -11,6 +11,7 @@
 #include "demos/compare/proxy_solver.h"
 #include "gnn/model/engine.h"
 #include "gnn/model/make_cloth.h"
+#include "gnn/physics/stepper/divided_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "gnn/skinning/skinning_stepper.h"
 
@@ -307,12 +308,16 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
         return std::make_unique<BulletClothStepper>(scene.garment(), bullet_settings(name, scene),
                                                     scene.segments());
     auto stepper = make_own_solver(name, scene, settings);
+    if (stepper->fixed_dt() == 0.0) return stepper;
+    const long parts = std::clamp(std::lround(scene.frame_time() / stepper->fixed_dt()), 1L, 64L);
     // Without its network it would be another solver under this name.
-    if (stepper->fixed_dt() > 0.0 && std::abs(stepper->fixed_dt() - scene.frame_time()) > 1e-6)
+    if (std::abs(parts * stepper->fixed_dt() - scene.frame_time()) > 1e-6)
         throw UsageError("solver " + name + ": its network takes steps of 1/" +
                          std::to_string(std::lround(1.0 / stepper->fixed_dt())) +
                          " s; leave it out, or take that --rate");
-    return stepper;
+    if (parts == 1) return stepper;
+    return std::make_unique<DividedStepper>(scene.garment(), std::move(stepper),
+                                            static_cast<int>(parts));
 }
 
 }  // namespace cloth

@@ -27,8 +27,8 @@ double rms_distance(const Points& a, const Points& b) {
     return std::sqrt((a - b).rowwise().squaredNorm().mean());
 }
 
-/// Tells one garment at rest and its fabric from another (FNV-1a).
-std::uint64_t fingerprint(const Garment& garment, const ClothState& start) {
+/// Tells one garment at rest, its fabric and its time step (s) from another (FNV-1a).
+std::uint64_t fingerprint(const Garment& garment, const ClothState& start, double dt) {
     std::uint64_t hash = 14695981039346656037ull;
     const auto add = [&](const void* data, size_t bytes) {
         for (size_t i = 0; i < bytes; ++i)
@@ -40,7 +40,7 @@ std::uint64_t fingerprint(const Garment& garment, const ClothState& start) {
     add_points(garment.rest().vertices);
     add_points(start.x);
     const Fabric& fabric = garment.fabric();
-    for (const double value : {fabric.density, fabric.mu, fabric.lambda, fabric.bending})
+    for (const double value : {fabric.density, fabric.mu, fabric.lambda, fabric.bending, dt})
         add(&value, sizeof value);
     return hash;
 }
@@ -125,7 +125,7 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
     std::ostringstream name;
     name << m_folder << '/' << scene.name << '_' << garment.vertex_count() << '_'
          << m_settings.frames << '_' << m_settings.reference_iterations << '_' << std::hex
-         << fingerprint(garment, start) << ".pt";
+         << fingerprint(garment, start, scene.scene->dt()) << ".pt";
     const std::string file = name.str();
     if (load_reference(file, garment.vertex_count(), m_settings.frames, scene.reference,
                        scene.start_velocities))

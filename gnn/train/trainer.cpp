@@ -80,8 +80,11 @@ Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
       m_statistics(m_settings.model) {
     for (int k = m_group.rank(); k < m_settings.batch; k += m_group.size())
         m_lanes.emplace_back(k, m_factory, m_settings);
-    if (!m_settings.start_weights.empty())
-        m_network.import_weights(Weights::load(m_settings.start_weights));
+    if (!m_settings.start_weights.empty()) {
+        Weights start = Weights::load(m_settings.start_weights);
+        start.config.dt = m_settings.model.dt;  // features and answers are in units of g dt^2
+        m_network.import_weights(start);
+    }
     if (m_settings.recipe.mean_share > 0.0) m_mean = m_network.parameters().flat().detach().clone();
     m_network.set_threads(m_settings.threads);
 }

@@ -43,8 +43,8 @@ struct TrainerSettings {
     double save_every = 3.0;        ///< minutes between checkpoints, 0 to 1e4
     std::int64_t freeze_statistics = 1000;  ///< iterations that shape the feature statistics, 0 to
                                             ///< 1e9
-    std::string start_weights;  ///< file of weights to start from; their feature statistics stay as
-                                ///< they are. Empty: random ones
+    std::string start_weights;  ///< file of weights to start from, of any time step; their feature
+                                ///< statistics stay as they are. Empty: random ones
     std::string references;     ///< folder of the rollouts' references; empty: in `out`
     /// Folder of checkpoint.pt, weights.safetensors, metrics.csv and rollouts.csv
     std::string out = "out/train";

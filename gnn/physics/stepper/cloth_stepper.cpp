@@ -8,6 +8,7 @@
 #include "data/core/check_range.h"
 #include "data/core/skin_goals.h"
 #include "gnn/physics/stepper/guess.h"
+#include "gnn/physics/stepper/part_report.h"
 #include "gnn/physics/stepper/relative_motion.h"
 #include "gnn/physics/stepper/stopwatch.h"
 
@@ -22,25 +23,6 @@ void check(const GuardSettings& settings) {
     check_range("GuardSettings.tunnelling_motion", settings.tunnelling_motion, 1e-3, 1.0);
     check_range("GuardSettings.max_substeps", settings.max_substeps, 1, 64);
     check(settings.iterations, "GuardSettings.iterations");
-}
-
-void add(const StepReport& part, StepReport& report) {
-    report.finite = part.finite;
-    report.iterations += part.iterations;
-    report.residual = part.residual;
-    report.gain = part.gain;
-    report.converged = part.converged && report.converged;
-    report.out_of_time = part.out_of_time || report.out_of_time;
-    report.max_penetration = part.max_penetration;
-    report.max_entry = std::max(report.max_entry, part.max_entry);
-    if (part.tunnelled)
-        report.tunnelled = std::min(*part.tunnelled, report.tunnelled.value_or(*part.tunnelled));
-    report.points_tunnelled = std::max(report.points_tunnelled, part.points_tunnelled);
-    report.vertices_beyond_goals = part.vertices_beyond_goals;
-    report.max_goal_excess = part.max_goal_excess;
-    report.tangles = part.tangles;
-    report.first_tangle = part.first_tangle;
-    report.times += part.times;
 }
 
 constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
@@ -259,7 +241,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
         if (m_deadline.is_set())
             m_solver->set_deadline(Deadline::in(m_deadline.left() / (substeps - k)));
         const StepReport part = take_part(m_part.take(k), dt / substeps, limits, corrections);
-        add(part, report);
+        add_part(part, report);
         if (!report.finite) return report;
         m_part_ms += least_ms(part, limits) / substeps;
     }

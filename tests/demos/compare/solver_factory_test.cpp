@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "data/authoring/sheet.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
+#include "tests/gnn/model/random_weights.h"
 #include "tests/gnn/physics/physics_scenes.h"
 
 namespace cloth::solver_factory_test {
@@ -22,6 +25,15 @@ class FreeSheet : public ComparisonScene {
         boundary.pin_targets.resize(0, 3);
         return boundary;
     }
+};
+
+/// 900 vertices, without an outside.
+class LargeSheet : public ComparisonScene {
+ public:
+    LargeSheet()
+        : ComparisonScene(
+              Garment("large sheet", make_sheet(0.5, 0.5, 900), Fabric::soft_cotton())) {}
+    Boundary boundary(double, double) const override { return FreeSheet().boundary(0.0, 0.0); }
 };
 
 std::string refusal(const std::string& name, int rate = 30) {
@@ -61,6 +73,48 @@ TEST(SolverFactory, NetworksKeepToTheirTimeStep) {
     EXPECT_EQ(refusal("xpbd-20", 60), "");
 }
 
+/// A folder with a network `short` for 1/60 s.
+class ShortSteps : public ::testing::Test {
+ protected:
+    ShortSteps() {
+        ModelConfig config = ModelConfig::variant_named("fast", 2);
+        config.width = 16;
+        config.dt = 1.0 / 60.0;
+        m_settings.weights = ::testing::TempDir() + "/short_steps";
+        std::filesystem::create_directories(m_settings.weights);
+        test::random_weights(config).save(m_settings.weights + "/short.safetensors");
+    }
+
+    std::string made(const std::string& name, int rate) const {
+        const FreeSheet scene(rate);
+        const auto stepper = make_solver(name, scene, m_settings);
+        EXPECT_NEAR(stepper->fixed_dt(), scene.frame_time(), 1e-12);
+        return stepper->name();
+    }
+
+    SolverSettings m_settings;
+};
+
+TEST_F(ShortSteps, AreTakenOneAfterTheOtherInEachFrame) {
+    EXPECT_EQ(made("short+1", 60), "short+1");
+    EXPECT_EQ(made("short+1", 30), "short+1x2");
+    EXPECT_EQ(made("short", 10), "shortx6");
+    for (const int rate : {90, 40})
+        EXPECT_THROW(make_solver("short+1", FreeSheet(rate), m_settings), UsageError) << rate;
+}
+
+TEST_F(ShortSteps, AreThoseOfAProxyAlone) {
+    const LargeSheet scene;
+    const auto stepper = make_solver("short+2~120", scene, m_settings);
+    EXPECT_EQ(stepper->name().rfind("short+2x2~1", 0), 0u) << stepper->name();
+    ClothState state = ClothState::at_rest(scene.garment());
+    const double frame = scene.frame_time();
+    ASSERT_TRUE(stepper->step(scene.boundary(0.0, 0.0), frame, state).finite);
+    // The guess, free fall, is the minimum, which no network can better.
+    const double fall = state.x.col(1).mean() - scene.garment().rest().vertices.col(1).mean();
+    EXPECT_NEAR(fall, -0.75 * 9.81 * frame * frame, 1e-6) << "two steps of backward Euler";
+}
+
 TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {
     const NetworkName plain("fast_16"), torch("torch-fast+0"), rounded("bf16-fast+12");
     EXPECT_TRUE(plain.as_shipped && !plain.torch && !plain.bfloat16);
@@ -70,15 +124,6 @@ TEST(SolverFactory, NetworkNamesSayWhatRunsThem) {
     EXPECT_EQ(rounded.refine, "12");
     EXPECT_NO_THROW(make_solver("bf16-fast+0", FreeSheet(), {}));
 }
-
-/// 900 vertices, without an outside.
-class LargeSheet : public ComparisonScene {
- public:
-    LargeSheet()
-        : ComparisonScene(
-              Garment("large sheet", make_sheet(0.5, 0.5, 900), Fabric::soft_cotton())) {}
-    Boundary boundary(double, double) const override { return FreeSheet().boundary(0.0, 0.0); }
-};
 
 TEST(SolverFactory, ProxiesAreSimulatedByAnySolver) {
     const LargeSheet scene;

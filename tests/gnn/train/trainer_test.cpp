@@ -228,6 +228,21 @@ TEST(Trainer, StartsFromWeightsAndKeepsTheirStatistics) {
         EXPECT_EQ(resumed.weights().tensor(name).data, before.tensor(name).data);
 }
 
+TEST(Trainer, GoesOnFromWeightsForAnotherTimeStep) {
+    TrainerSettings settings = tiny("thirtieth");
+    Trainer first(settings);
+    for (int k = 0; k < 3; ++k) first.iterate();
+    first.save();
+    settings.start_weights = settings.out + "/weights.safetensors";
+    settings.out = tiny("sixtieth").out;
+    settings.model.dt = 1.0 / 60.0;
+    Trainer second(settings);
+    EXPECT_EQ(numbers(second), numbers(first));
+    second.iterate();
+    EXPECT_EQ(second.weights().config.dt, 1.0 / 60.0);
+    EXPECT_NE(numbers(second), numbers(first));
+}
+
 TEST(Trainer, IsAFunctionOfItsSeed) {
     TrainerSettings settings = tiny("seed");
     Trainer a(settings), b(settings);
