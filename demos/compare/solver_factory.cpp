@@ -169,6 +169,17 @@ std::shared_ptr<Predictor> make_predictor(const NetworkName& network, const Weig
                                     EngineSettings{settings.threads});
 }
 
+/// Of a network for steps of this length (s).
+long steps_in_frame(const std::string& name, double dt, const ComparisonScene& scene) {
+    const long steps = std::clamp(std::lround(scene.frame_time() / dt), 1L, 64L);
+    // Without its network it would be another solver under this name.
+    if (std::abs(static_cast<double>(steps) * dt - scene.frame_time()) > 1e-6)
+        throw UsageError("solver " + name + ": its network takes steps of 1/" +
+                         std::to_string(std::lround(1.0 / dt)) +
+                         " s; leave it out, or take that --rate");
+    return steps;
+}
+
 std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& scene,
                                       const SolverSettings& settings) {
     ClothStepperSettings learned;
@@ -190,6 +201,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
+    steps_in_frame(name, weights.config.dt, scene);
     return make_cloth(scene.garment(), make_predictor(network, weights, settings), learned,
                       small_steps);
 }

@@ -112,6 +112,8 @@ class ClothStepper : public Stepper {
     std::string name() const override;
     double fixed_dt() const override { return m_solver->fixed_dt(); }
     /// Steps of other lengths than fixed_dt() are taken as parts of steps are: without a network.
+    /// With one for the small steps fixed_dt() is 0: it is asked where a step is a multiple of its
+    /// length, and cloth moves.
     bool accepts_any_dt() const override { return true; }
     /// Factorises for steps of this length and for their parts.
     void prepare(double dt) override;

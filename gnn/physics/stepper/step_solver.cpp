@@ -135,13 +135,25 @@ StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& st
         limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
                                              std::max(one.iterations, count * limits.iterations));
     }
-    return solve(boundary, dt, m_start.get(), enough(limits), 1, state);
+    return solve(boundary, dt, start_for(dt), enough(limits), 1, state);
 }
 
 StepReport StepSolver::in_small_steps(int count, const Boundary& boundary, double dt, From from,
                                       ClothState& state) {
     return solve(boundary, dt, from == From::start ? m_start.get() : nullptr,
                  m_settings.quasi_newton, count, state);
+}
+
+double StepSolver::fixed_dt() const {
+    return !m_start || start_for(1.0 / m_settings.small_step_rate) ? 0.0 : m_start->fixed_dt();
+}
+
+StepStart* StepSolver::start_for(double dt) const {
+    constexpr double same = 1e-3;  // callers' time steps are floats
+    if (!m_start) return nullptr;
+    const double made_for = m_start->fixed_dt();
+    const bool fits = made_for == 0.0 || std::abs(dt - made_for) < same * made_for;
+    return fits ? m_start.get() : nullptr;
 }
 
 int StepSolver::worthwhile_iterations() const {
@@ -214,10 +226,8 @@ bool StepSolver::go_on_from(Points& x, StepEnd contacts, const Boundary& boundar
     find_contacts(boundary, contacts == StepEnd::start ? state.x : x, contacts);
     report.times.proximity += watch.lap();
     const double features = report.times.features;
-    constexpr double same = 1e-3;  // callers' time steps are floats
-    const bool made_for = m_start && std::abs(dt - fixed_dt()) < same * fixed_dt();
-    const bool finite = run(boundary, dt, made_for ? m_start.get() : nullptr, Start::outside,
-                            m_settings.quasi_newton, 1, state, report) &&
+    const bool finite = run(boundary, dt, start_for(dt), Start::outside, m_settings.quasi_newton, 1,
+                            state, report) &&
                         m_x.allFinite();
     report.times.solve += watch.lap() - (report.times.features - features);
     if (finite) x = m_x;
@@ -243,7 +253,10 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
                                  const IterationLimits& limits, const std::vector<Tangle>* tangles,
                                  StepReport& report) {
     const int parts = m_parts;
-    bool predicted = start && predict_acceleration(boundary, dt, *start, tangles, report);
+    StepStart* const of_each = start ? start_for(m_last_dt) : nullptr;
+    bool predicted = start && !of_each && start_for(dt) &&
+                     predict_acceleration(boundary, dt, *start, tangles, report);
+    bool rejected = false;
     const Deadline deadline = m_deadline, for_more = m_deadline_for_more;
     m_boundary_part.begin(*m_garment, m_last, boundary, parts, BoundaryPart::Surfaces::left_out);
     m_contact_part.begin(m_contacts, parts);
@@ -261,7 +274,8 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
         begin(part, contacts, m_last_dt, tangles);
         m_quasi_newton.set_continued(k > 0);
         if (!predicted) {
-            finite = minimise_part(part, contacts, nullptr, Start::guess, limits, report);
+            finite = minimise_part(part, contacts, of_each, Start::guess, limits, report);
+            rejected = rejected || report.prediction_rejected;
             continue;
         }
         const PotentialValue* at_x = start_from_acceleration(part, contacts, report);
@@ -269,6 +283,7 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
         report.prediction_rejected = report.prediction_rejected && k == 0;
         finite = descend(part, limits, at_x, m_last, report);
     }
+    report.prediction_rejected = report.prediction_rejected || rejected;
     m_quasi_newton.set_continued(false);
     m_deadline = deadline;
     m_deadline_for_more = for_more;
@@ -312,7 +327,7 @@ bool StepSolver::minimise_part(const Boundary& boundary, const SurfaceContacts& 
     if (from == Start::outside) at_x = start_outside(boundary, contacts, start, limits, report);
     if (start && limits.iterations == 0 && !at_x) return true;  // as it was predicted
     if (!descend(boundary, limits, at_x, m_last, report)) return false;
-    const bool few = !start && m_settings.small_step_rate > 0.0;  // iterations
+    const bool few = (!start || m_parts > 1) && m_settings.small_step_rate > 0.0;  // iterations
     return !few || undo_gain(boundary, contacts, limits, report);
 }
 
@@ -433,7 +448,7 @@ const PotentialValue* StepSolver::ask(StepStart& start, const Boundary& boundary
     StageTimes times;
     const bool guess_known =
         start.predict(state, boundary, m_potential, m_guess, m_at_guess, m_started, times);
-    report.times.features = times.features;
+    report.times.features += times.features;
     report.prediction_rejected = m_started.rows() != m_guess.rows() || !m_started.allFinite();
     if (report.prediction_rejected)
         m_started = m_guess;

@@ -40,8 +40,9 @@ struct StepSettings {
     /// motion, and need fewer iterations; above this rate no step is cut. Cloth that hardly moves
     /// takes one step instead, with the iterations of all, ten at least, and more for as long as
     /// they gain, so that it comes to rest where it should, and so does a step that has to reach a
-    /// residual. By Newton's method it takes four iterations. What a start predicts is shared out
-    /// between them.
+    /// residual. By Newton's method it takes four iterations. A start that is made for steps of
+    /// their length is asked in each; what one for the whole step predicts is shared out between
+    /// them.
     double small_step_rate = 120.0;
     /// Small steps of stiff cloth without a start are each one Newton step of so many
     /// conjugate-gradient iterations, 0 to 200, whatever `quasi_newton` says: few iterations of
@@ -113,7 +114,8 @@ class StepSolver {
     /// of Newton's method; with a start its name, and "+K" with exactly K iterations, "+1e-02" with
     /// a tolerance, "+KsR" with small steps.
     std::string name() const;
-    double fixed_dt() const { return m_start ? m_start->fixed_dt() : 0.0; }
+    /// The start's; 0 without one, and where it is one for the small steps.
+    double fixed_dt() const;
     const StepSettings& settings() const { return m_settings; }
     /// See Stepper::is_independent(): if the start is, and nobody else holds it.
     bool is_independent() const {
@@ -138,9 +140,10 @@ class StepSolver {
     void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
-    /// A whole step, from the start if there is one. Where settings ask for small steps it has as
-    /// many iterations as StepSettings::small_step_rate says of cloth that hardly moves.
-    /// The arguments have passed is_valid_step(); a step that fails leaves the state as it was.
+    /// A whole step, from the start if there is one for this length. Where settings ask for small
+    /// steps it has as many iterations as StepSettings::small_step_rate says of cloth that hardly
+    /// moves. The arguments have passed is_valid_step(); a step that fails leaves the state as it
+    /// was.
     virtual StepReport whole(const Boundary& boundary, double dt, ClothState& state);
 
     /// Moves `x` (|V| x 3, m), where something else says that the step ends, such as a coarser
@@ -195,6 +198,7 @@ class StepSolver {
     const SelfContactProjection& self_contact() const { return m_self_contact; }  ///< last step's
 
  private:
+    StepStart* start_for(double dt) const;
     IterationLimits adjusted(IterationLimits limits) const;
     IterationLimits enough(const IterationLimits& limits) const;
     IterationLimits for_correction(const IterationLimits& limits, double dt) const;

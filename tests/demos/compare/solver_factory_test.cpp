@@ -103,6 +103,15 @@ TEST_F(ShortSteps, AreTakenOneAfterTheOtherInEachFrame) {
         EXPECT_THROW(make_solver("short+1", FreeSheet(rate), m_settings), UsageError) << rate;
 }
 
+TEST_F(ShortSteps, AreTheSmallStepsOfAFrame) {
+    for (const auto& [name, rate] : {std::pair("short+1s60", 30), std::pair("short+0s60", 10)})
+        EXPECT_EQ(make_solver(name, FreeSheet(rate), m_settings)->name(), name);
+    EXPECT_THROW(make_solver("short+1s60", FreeSheet(25), m_settings), UsageError);
+    const LargeSheet scene;
+    EXPECT_EQ(make_solver("short+1s60~120", scene, m_settings)->name().rfind("short+1s60~1", 0),
+              0u);
+}
+
 TEST_F(ShortSteps, AreThoseOfAProxyAlone) {
     const LargeSheet scene;
     const auto stepper = make_solver("short+2~120", scene, m_settings);

@@ -343,19 +343,22 @@ TEST_F(SmallSteps, ShareTheIterationsThatAStepMayTake) {
 /// Predicts the same acceleration (m/s^2) for all vertices.
 class Uniform : public StepStart {
  public:
-    explicit Uniform(const Vec3& acceleration) : m_acceleration(acceleration) {}
+    /// @param length  of the steps that it is for (s)
+    explicit Uniform(const Vec3& acceleration, double length = dt)
+        : m_acceleration(acceleration), m_length(length) {}
     std::string name() const override { return "uniform"; }
-    double fixed_dt() const override { return dt; }
+    double fixed_dt() const override { return m_length; }
     bool predict(const ClothState&, const Boundary&, const IncrementalPotential&,
                  const Points& guess, PotentialValue&, Points& prediction, StageTimes&) override {
         ++asked;
-        prediction = guess.rowwise() + dt * dt * m_acceleration.transpose();
+        prediction = guess.rowwise() + m_length * m_length * m_acceleration.transpose();
         return false;
     }
     int asked = 0;
 
  private:
     Vec3 m_acceleration;
+    double m_length;
 };
 
 TEST_F(SmallSteps, SettingsThatDoNotGoTogetherAreRefused) {
@@ -431,6 +434,55 @@ TEST_F(SmallSteps, OfAnotherLengthAreMadeWithoutTheStart) {
     untold.step(boundary, 0.02, b);
     EXPECT_EQ(a.x, b.x);
     EXPECT_EQ(start->asked, 0);
+}
+
+TEST_F(SmallSteps, AskAStartOfTheirLengthInEach) {
+    for (const int iterations : {0, 60}) {
+        const auto start = std::make_shared<Uniform>(Vec3(0, -7.0, 0), dt / 4);
+        ClothStepper stepper(m_hung, small(4, iterations), start);
+        ClothStepperSettings one = small(1, iterations);
+        one.step.small_step_rate = 0.0;
+        ClothStepper by_hand(m_hung, one, std::make_shared<Uniform>(Vec3(0, -7.0, 0), dt / 4));
+        EXPECT_EQ(stepper.fixed_dt(), 0.0) << "any step will do";
+        EXPECT_EQ(by_hand.fixed_dt(), dt / 4);
+        ClothState a = moving(m_hung, Vec3(0.3, -0.5, 0)), b = a;
+        const Boundary boundary = boundary_of(m_hung, a);
+        const StepReport report = stepper.step(boundary, dt, a);
+        ASSERT_TRUE(report.finite);
+        EXPECT_EQ(report.iterations, 4 * iterations);
+        EXPECT_EQ(start->asked, 4);
+        bool rejected = false;
+        for (int k = 0; k < 4; ++k)
+            rejected = by_hand.step(boundary, dt / 4, b).prediction_rejected || rejected;
+        EXPECT_EQ(report.prediction_rejected, rejected);
+        // Iterations of a small step know those of the one before; many end at the minimum.
+        EXPECT_LT((a.x - b.x).cwiseAbs().maxCoeff(), iterations == 0 ? 1e-12 : 1e-5);
+        stepper.step(boundary, dt / 4, a);
+        EXPECT_EQ(start->asked, 5) << "a whole step of that length is one";
+        stepper.step(boundary, 0.02, a);
+        EXPECT_EQ(start->asked, 5);
+    }
+}
+
+TEST_F(SmallSteps, OfWhichAStartSpoilsOneSayIt) {
+    /// Not finite when it is asked for the second time.
+    class Once : public Uniform {
+     public:
+        Once() : Uniform(Vec3::Zero(), dt / 4) {}
+        bool predict(const ClothState& state, const Boundary& boundary,
+                     const IncrementalPotential& potential, const Points& guess,
+                     PotentialValue& at_guess, Points& prediction, StageTimes& times) override {
+            Uniform::predict(state, boundary, potential, guess, at_guess, prediction, times);
+            if (asked == 2) prediction(3, 1) = std::numeric_limits<double>::infinity();
+            return false;
+        }
+    };
+    ClothStepper stepper(m_hung, small(4, 0), std::make_shared<Once>());
+    ClothState state = moving(m_hung, Vec3(0, -0.5, 0));
+    const StepReport report = stepper.step(boundary_of(m_hung, state), dt, state);
+    EXPECT_TRUE(report.finite);
+    EXPECT_TRUE(report.prediction_rejected);
+    EXPECT_TRUE(state.x.allFinite());
 }
 
 }  // namespace
