@@ -33,8 +33,8 @@ struct StepReport {
     /// |gradient| of the incremental potential after the step, over the norm of gravity's and
     /// inertia's forces at x_t; none: not computed.
     std::optional<double> residual;
-    /// What the last five quasi-Newton iterations gained, as a distance (m), see MinimiseReport;
-    /// none: there were fewer.
+    /// What the last five quasi-Newton iterations, or the last one by Newton's method, gained, as a
+    /// distance (m), see MinimiseReport; none: there were fewer.
     std::optional<double> gain;
     bool converged = false;            ///< the stepper's own tolerance was met
     bool out_of_time = false;          ///< Stepper::set_max_ms() ended iterations, cuts or searches

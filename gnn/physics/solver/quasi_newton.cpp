@@ -18,21 +18,22 @@ constexpr int max_backtracks = 20;
 /// The energies of the last iterations, and what became of them as a distance.
 class Gain {
  public:
-    Gain(double dt, double mass) : m_scale(dt * std::sqrt(2.0 / mass)) {}
+    /// @param span  iterations, 1 to 5
+    Gain(double dt, double mass, int span)
+        : m_scale(dt * std::sqrt(2.0 / mass)), m_span(static_cast<size_t>(span)) {}
 
     /// @return  see MinimiseReport::gain (m)
     std::optional<double> after(double energy) {
-        double& oldest = m_energies[static_cast<size_t>(m_count++) % m_energies.size()];
+        double& oldest = m_energies[m_count++ % m_span];
         const double before = std::exchange(oldest, energy);
-        if (m_count <= span) return std::nullopt;
+        if (m_count <= m_span) return std::nullopt;
         return m_scale * std::sqrt(std::max(0.0, before - energy));
     }
 
  private:
-    static constexpr int span = 5;  // iterations
     double m_scale;
-    int m_count = 0;
-    std::array<double, span> m_energies = {};
+    size_t m_span, m_count = 0;
+    std::array<double, 5> m_energies = {};
 };
 
 // Minimum of the parabola through E(0), its slope and E(step), kept within a tenth and a half.
@@ -97,7 +98,8 @@ MinimiseReport QuasiNewton::minimise(const IncrementalPotential& potential, Poin
                (report.residual <= limits.tolerance ||
                 (report.gain && *report.gain < limits.least_gain));
     };
-    Gain gain(potential.inertial_dt(), potential.garment().masses().sum());
+    Gain gain(potential.inertial_dt(), potential.garment().masses().sum(),
+              hessian_cg_iterations() > 0 ? 1 : 5);
     gain.after(report.energy);
     double longest = 0.0, left = deadline.left();  // ms
     while (report.iterations < limits.iterations) {

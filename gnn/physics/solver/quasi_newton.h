@@ -63,9 +63,10 @@ struct MinimiseReport {
     int evaluations = 0;    ///< energies (with gradients) computed
     double energy = 0.0;    ///< E(x) at the end (J)
     double residual = 0.0;  ///< |gradient| / force_scale() at the end, over the free vertices
-    /// What the last five iterations gained, as a distance (m): dt sqrt(2 (decrease of E) / mass),
-    /// by which the garment as a whole would have to be moved against its inertia for as much
-    /// energy. None: there were fewer; 0: E could not be lowered any further.
+    /// What the last five iterations gained, or with hessian_cg_iterations the last one, as a
+    /// distance (m): dt sqrt(2 (decrease of E) / mass), by which the garment as a whole would have
+    /// to be moved against its inertia for as much energy. None: there were fewer; 0: E could not
+    /// be lowered any further.
     std::optional<double> gain;
     bool converged = false;    ///< the tolerance, or the least gain, was met
     bool out_of_time = false;  ///< the deadline ended it

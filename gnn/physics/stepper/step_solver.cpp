@@ -19,9 +19,10 @@ constexpr int most_iterations = 200;  // towards a residual that is asked for
 // trembling, as many in one step do not.
 constexpr double rest_speed = 0.1;  // m/s
 
-constexpr int newton_steps = 4;            // in place of many iterations
-constexpr int iterations_at_goals = 2;     // after Newton's step
-constexpr double stiff_wave_speed = 32.0;  // m/s, along the cloth; real cotton has 170, soft 15
+constexpr int newton_steps = 4;             // in place of many iterations, at most
+constexpr double least_newton_gain = 1e-4;  // m: one that gains less is the last
+constexpr int iterations_at_goals = 2;      // after Newton's step
+constexpr double stiff_wave_speed = 32.0;   // m/s, along the cloth; real cotton has 170, soft 15
 
 bool is_stiff(const Fabric& fabric) {
     return fabric.longitudinal() > stiff_wave_speed * stiff_wave_speed * fabric.density;
@@ -115,7 +116,13 @@ IterationLimits StepSolver::adjusted(IterationLimits limits) const {
 IterationLimits StepSolver::enough(const IterationLimits& limits) const {
     const bool by_newton =
         m_settings.small_step_rate > 0.0 && m_settings.quasi_newton.hessian_cg_iterations > 0;
-    return by_newton ? IterationLimits::exactly(std::min(newton_steps, limits.iterations)) : limits;
+    if (!by_newton) return limits;
+    IterationLimits few = IterationLimits::exactly(std::min(newton_steps, limits.iterations));
+    if (std::isinf(m_most_residual)) {
+        few.least_iterations = 1;
+        few.least_gain = least_newton_gain;
+    }
+    return few;
 }
 
 /// After small steps no more than all of them took: the most of it is done, and converged steps

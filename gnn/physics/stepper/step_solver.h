@@ -40,9 +40,9 @@ struct StepSettings {
     /// motion, and need fewer iterations; above this rate no step is cut. Cloth that hardly moves
     /// takes one step instead, with the iterations of all, ten at least, and more for as long as
     /// they gain, so that it comes to rest where it should, and so does a step that has to reach a
-    /// residual. By Newton's method it takes four iterations. A start that is made for steps of
-    /// their length is asked in each; what one for the whole step predicts is shared out between
-    /// them.
+    /// residual. By Newton's method it takes four iterations at most, for as long as they gain 0.1
+    /// mm. A start that is made for steps of their length is asked in each; what one for the whole
+    /// step predicts is shared out between them.
     double small_step_rate = 120.0;
     /// Small steps of stiff cloth without a start are each one Newton step of so many
     /// conjugate-gradient iterations, 0 to 200, whatever `quasi_newton` says: few iterations of

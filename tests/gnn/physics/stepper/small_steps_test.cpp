@@ -314,6 +314,27 @@ TEST_F(SmallSteps, OfStiffClothFallFreely) {
     EXPECT_LT(fallen(small(4, 3)), 0.9 * right);
 }
 
+/// By Newton's method a step of cloth that hardly moves goes on for as long as that gains anything.
+TEST_F(SmallSteps, OfStiffClothAtRestAreOneIteration) {
+    const Garment sheet("sheet", make_sheet(1.0, 1.0, 400), Fabric::real_cotton(), {0, 19});
+    ClothState state = ClothState::at_rest(sheet);
+    Boundary boundary = boundary_of(sheet, state);
+    ClothStepper stepper(sheet);
+    for (int frame = 0; frame < 200; ++frame) {
+        stepper.step(boundary, dt, state);
+        state.v *= 0.8;  // or it would swing for long
+    }
+    ASSERT_LT(state.v.rowwise().norm().maxCoeff(), 0.01) << "it has not come to rest";
+    const StepReport rests = stepper.step(boundary, dt, state);
+    EXPECT_EQ(rests.iterations, 1);
+    EXPECT_TRUE(rests.converged);
+    EXPECT_LT(rests.gain.value(), 1e-4);
+    boundary.gravity *= 3.0;
+    const StepReport pulled = stepper.step(boundary, dt, state);
+    EXPECT_GT(pulled.iterations, 1) << "what has to move is not left behind";
+    EXPECT_LE(pulled.iterations, 4);
+}
+
 TEST_F(SmallSteps, WithoutTimeAreOneStepOfOneIteration) {
     ClothStepper stepper(m_hung, small(4, 3));
     ASSERT_TRUE(stepper.set_max_ms(1e-6));
