@@ -62,7 +62,8 @@ DataSet learned(const std::string& garment) {
         "build/release/demos/speed_error --garment " + garment +
             " --limbs --frames 30 --relative-to quasi-newton-10 --solvers xpbd-40,"
             "quasi-newton-10,default,small+3,quasi-newton-2s60~1000,small+3~1000,small+3~700,"
-            "hood_fast_own+0,hood_fast_coarse+0~1000,hood_fast_coarse+0~1500 --out OUT",
+            "small60+1s60~1000,small60+2s60~1500,hood_fast_own+0,hood_fast_coarse+0~1000,"
+            "hood_fast_coarse60+0s60~1000 --out OUT",
         "speed_error.json");
 }
 
@@ -72,8 +73,9 @@ DataSet alone(const std::string& garment) {
         "alone_" + garment,
         "build/release/demos/hard_cases --motions ../shared/data/motions/validation --garment " +
             garment +
-            " --steppers hood_fast_own+0,hood_fast_own+0~1000,hood_fast_coarse+0~1000,"
-            "hood_fast_coarse+0~1500,small+3~1000,small+3~1500,xpbd-40 --no-pictures --out OUT",
+            " --steppers hood_fast_own+0,hood_fast_coarse+0~1000,hood_fast_coarse+0~1500,"
+            "hood_fast_coarse60+0s60~1000,hood_fast_coarse60+0s60~1500,small+3~1000,small+3~1500,"
+            "small60+1s60~1000,small60+2s60~1500,xpbd-40 --no-pictures --out OUT",
         "hard_cases.json");
 }
 
@@ -130,8 +132,8 @@ std::vector<DataSet> data_sets() {
          "build/release/demos/speed_error --scene all --limbs --frames 30 --relative-to xpbd-40"
          " --solvers xpbd-40,quasi-newton-10,quasi-newton,quasi-newton-bdf2,quasi-newton-1s120,"
          "quasi-newton-2s60,quasi-newton-2s120,quasi-newton-3s120,quasi-newton-5s120,"
-         "quasi-newton-2s240,quasi-newton-3s120-bdf2,default~1000+1,small+3~1000,small,small+2s120,"
-         "small+3"
+         "quasi-newton-2s240,quasi-newton-3s120-bdf2,default~1000+1,small+3~1000,small60+1s60~1000,"
+         "small60+2s60~1500,small60+2s60,small,small+2s120,small+3"
          " --out OUT",
          "speed_error.json",
          {},

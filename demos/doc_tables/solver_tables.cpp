@@ -159,9 +159,11 @@ MarkdownTable which_solver_table(const std::vector<DataFile>& files) {
          "iteration of its own takes away the stretch of the coarse shape (`make_proxy_cloth()`)"},
         {"small+3~1000",
          "the least time for a fine garment: a network and three iterations step the coarse one"},
+        {"small60+2s60~1500",
+         "a fine garment on a character: in each 60th of a second a network and two iterations "
+         "step the coarse one (`ProxyClothSettings::learned()`)"},
         {"quasi-newton",
-         "each step should be solved well: whole steps, iterations for as long as they gain"},
-        {"small", "the learned solver: a network, then the iterations of `quasi-newton`"}};
+         "each step should be solved well: whole steps, iterations for as long as they gain"}};
     MarkdownTable table;
     table.heading = {"solver",
                      "use it when",

@@ -6,6 +6,15 @@
 
 namespace cloth {
 
+ProxyClothSettings ProxyClothSettings::learned(std::shared_ptr<const EngineWeights> weights) {
+    ProxyClothSettings settings;
+    settings.proxy.weights = std::move(weights);
+    settings.proxy.step = StepSettings::in_small_steps(60.0, 2);
+    settings.proxy.small_steps_from_network = true;
+    settings.embedded.detail_iterations = 0;
+    return settings;
+}
+
 std::unique_ptr<EmbeddedStepper> make_proxy_cloth(const Garment& fine,
                                                   std::shared_ptr<const Garment> proxy,
                                                   const ProxyClothSettings& settings) {

@@ -121,13 +121,12 @@ TEST_F(GuideSnippets, SimulateCoarseShowFine) {
     EXPECT_TRUE(detailed->step(boundary, dt, state).finite);
     EXPECT_LT(state.x.col(1).maxCoeff(), -0.02);
 
-    const std::string small = cloth::asset_path("weights/small.safetensors");
-    cloth::ProxyClothSettings cheap;  // nothing on the shirt itself
-    cheap.proxy.weights = std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(small));
-    cheap.proxy.step = cloth::StepSettings::whole(cloth::IterationLimits::exactly(3));
-    cheap.proxy.guard.max_substeps = 1;
-    cheap.embedded.detail_iterations = 0;
-    const auto carried = cloth::make_proxy_cloth(shirt, proxy, cheap);
+    const std::string small60 = cloth::asset_path("weights/small60.safetensors");
+    const auto carried = cloth::make_proxy_cloth(
+        shirt, proxy,
+        cloth::ProxyClothSettings::learned(
+            std::make_shared<const cloth::EngineWeights>(cloth::Weights::load(small60))));
+    EXPECT_EQ(carried->name().rfind("small60+2s60~", 0), 0u) << carried->name();
     EXPECT_TRUE(carried->step(boundary, dt, state).finite);
     EXPECT_LT(state.x.col(1).maxCoeff(), -0.04);
 }
