@@ -11,14 +11,19 @@
 
 namespace cloth::test {
 
-/// What `make` says about a value; "" if it takes it.
-inline std::string refusal(const std::function<void(double)>& make, double value) {
+/// What a call says by an ArgumentError; "" if it throws none.
+inline std::string refusal(const std::function<void()>& call) {
     try {
-        make(value);
+        call();
     } catch (const ArgumentError& error) {
         return error.what();
     }
     return "";
+}
+
+/// What `make` says about a value; "" if it takes it.
+inline std::string refusal(const std::function<void(double)>& make, double value) {
+    return refusal([&] { make(value); });
 }
 
 inline void expect_refused(const std::string& field, double value,

@@ -201,7 +201,7 @@ std::unique_ptr<Stepper> make_network(std::string name, const ComparisonScene& s
     const Weights weights = Weights::load(weights_file(network.variant, settings.weights));
     if (network.torch && !settings.torch)
         throw UsageError("solver " + name + ": this program is built without LibTorch");
-    steps_in_frame(name, weights.config.dt, scene);
+    if (small_steps) steps_in_frame(name, weights.config.dt, scene);  // fixed_dt() may be 0
     return make_cloth(scene.garment(), make_predictor(network, weights, settings), learned,
                       small_steps);
 }
@@ -321,12 +321,7 @@ std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonSc
                                                     scene.segments());
     auto stepper = make_own_solver(name, scene, settings);
     if (stepper->fixed_dt() == 0.0) return stepper;
-    const long parts = std::clamp(std::lround(scene.frame_time() / stepper->fixed_dt()), 1L, 64L);
-    // Without its network it would be another solver under this name.
-    if (std::abs(parts * stepper->fixed_dt() - scene.frame_time()) > 1e-6)
-        throw UsageError("solver " + name + ": its network takes steps of 1/" +
-                         std::to_string(std::lround(1.0 / stepper->fixed_dt())) +
-                         " s; leave it out, or take that --rate");
+    const long parts = steps_in_frame(name, stepper->fixed_dt(), scene);
     if (parts == 1) return stepper;
     return std::make_unique<DividedStepper>(scene.garment(), std::move(stepper),
                                             static_cast<int>(parts));

@@ -7,6 +7,7 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/stepper_contract.h"
+#include "tests/ranges.h"
 
 namespace cloth::test {
 namespace {
@@ -114,15 +115,6 @@ struct Recorded {
         boundary.pin_targets.resize(0, 3);
     }
 };
-
-std::string refusal(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const ArgumentError& error) {
-        return error.what();
-    }
-    return "";
-}
 
 }  // namespace
 

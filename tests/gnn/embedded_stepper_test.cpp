@@ -11,6 +11,7 @@
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
 #include "tests/gnn/stepper_contract.h"
+#include "tests/ranges.h"
 
 namespace cloth::test {
 namespace {
@@ -146,15 +147,6 @@ double energy_of(const Draped& draped, const ClothState& state, const Points& x)
     Proximity().query(state.x, draped.boundary, contacts);
     potential.begin_step(state, draped.boundary, contacts, h);
     return potential.value(x);
-}
-
-std::string refusal(const std::function<void()>& call) {
-    try {
-        call();
-    } catch (const ArgumentError& error) {
-        return error.what();
-    }
-    return "";
 }
 
 }  // namespace
