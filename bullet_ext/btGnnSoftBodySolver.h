@@ -53,7 +53,7 @@ struct btGnnSolverSettings {
                                  ///< 0.05; 0: it never does
     /// Distance at which cloth bodies touch each other (m), 1e-3 to 0.02, where both ask for
     /// contact between soft bodies: VF_SS in m_cfg.collisions. 0: they pass through each other.
-    double layerThickness = 0.0;
+    double layerThickness = 4e-3;
     int maxFailedSteps = 3;  ///< failures in a row after which Bullet steps it, 1 to 1000000
     /// Bodies that push no rigid body, and have independent steppers, are stepped at the same time,
     /// see solveSteps() and cloth::Stepper::is_independent(). False, or with maxMs: all are stepped

@@ -103,6 +103,12 @@ class Obstacles : public LayerContacts::Outside {
 
     const SurfaceContacts& contacts() const override { return m_all; }
 
+    /// Whether none was found.
+    bool areNone() const {
+        return std::all_of(m_parts.begin(), m_parts.end(),
+                           [](const Part& part) { return part.boundary.obstacles.empty(); });
+    }
+
     /// Deepest vertex of a member that is not pinned (m); none where nothing was pushed.
     double deepest(size_t member, const Points& x) {
         if (m_parts.empty()) return 0.0;
@@ -212,18 +218,21 @@ std::optional<double> energyOf(const std::vector<ClothContacts::Member>& group,
     return energy;
 }
 
-/// Takes energy (J) that came from nowhere from the motion of the vertices of mass relative to
-/// their mean motion, which keeps their momentum. What more the fabric took up, it keeps: cloth
-/// that is held back for it hangs in the air.
-void calm(double surplus, const VectorX& masses, Points& v) {
+/// Takes energy (J) that came from nowhere from the motion of the vertices of mass: where none is
+/// without mass, that is pinned, from that relative to their mean motion, which keeps their
+/// momentum.
+/// @return what could not be taken (J)
+double calm(double surplus, const VectorX& masses, Points& v) {
     const double mass = masses.sum();
-    if (!(surplus > 0.0) || !(mass > 0.0)) return;
-    const Eigen::RowVector3d mean = (masses.transpose() * v) / mass;
+    if (!(surplus > 0.0) || !(mass > 0.0)) return std::max(0.0, surplus);
+    const double floats = masses.minCoeff() > 0.0 ? 1.0 : 0.0;
+    const Eigen::RowVector3d mean = floats / mass * (masses.transpose() * v);
     const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
-    if (!(moving > 0.0)) return;
+    if (!(moving > 0.0)) return surplus;
     const double kept = std::sqrt(1.0 - std::min(1.0, surplus / moving));
     for (Eigen::Index i = 0; i < masses.size(); ++i)
         if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
+    return std::max(0.0, surplus - moving);
 }
 
 }  // namespace
@@ -332,6 +341,28 @@ ClothContacts::Merged& ClothContacts::mergedOf(const std::vector<Member>& group)
     return merged;
 }
 
+/// Where the fabric took up energy that no motion can pay, and no little of it, the cloth does not
+/// go all the way. Held back for less, it would hang in the air.
+void ClothContacts::holdBack(const std::vector<Member>& group, Merged& merged) const {
+    constexpr double kLift = 0.013;  // m: what lifts all of the cloth by so much is little
+    const double gravity = toVec3(group.front().body->m_worldInfo->m_gravity).norm();
+    if (!(merged.debt > kLift * gravity * merged.masses.sum())) return;
+    const auto energy = [&](const Points& x) {
+        return *energyOf(group, merged.first, merged.masses, x, merged.v);
+    };
+    const double whole = energy(merged.x);
+    Points best = merged.x;
+    double taken = 0.0;
+    for (const double part : {0.75, 0.5, 0.25, 0.125, 0.0}) {
+        if (taken >= merged.debt) break;
+        const Points x = merged.x0 + part * (merged.x - merged.x0);
+        const double less = whole - energy(x);
+        if (less > taken) taken = less, best = x;
+    }
+    merged.x = best;
+    merged.debt -= std::min(merged.debt, taken);
+}
+
 ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
                                              BulletObstacles& obstacles) {
     Merged& merged = mergedOf(group);
@@ -355,7 +386,8 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     const LayerContacts::Report found =
         merged.contacts->resolve(merged.x0, kObstacleDistance, &outside, merged.x, merged.v);
     const Report report{found.pairs + found.crossings, found.left};
-    if (merged.x == x1 && merged.v == v1) return report;
+    // A contact that was expected has pushed, too, if it did not come.
+    if (merged.expected != m_step && merged.x == x1 && merged.v == v1) return report;
     const auto energy = [&](const Points& x, const Points& v) {
         return energyOf(group, merged.first, merged.masses, x, v);
     };
@@ -364,12 +396,19 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     if (start && alone && now) {
         // Contact makes no energy; nor do steps that nothing works on.
         const auto any = [&](auto what) { return std::any_of(group.begin(), group.end(), what); };
+        const bool whole =
+            !any([](const Member& member) { return !member.step->endsWithWorldStep(); });
+        const bool stands =
+            whole && !any([](const Member& member) { return member.step->isWorkedOn(); });
         double most = *alone;
-        if (any([](const Member& member) { return !member.step->endsWithWorldStep(); }))
-            most = std::max(*start, *alone);
-        else if (!any([](const Member& member) { return member.step->isWorkedOn(); }))
-            most = *start;
-        calm(*now - most, merged.masses, merged.v);
+        if (!whole) most = std::max(*start, *alone);
+        if (stands) most = *start;
+        merged.debt = calm(*now - most + merged.debt, merged.masses, merged.v);
+        // What floats goes on as its momentum says.
+        const bool floats = merged.masses.minCoeff() > 0.0 && outside.areNone();
+        if (stands && !floats) holdBack(group, merged);
+        constexpr double kForget = 1.0;  // s
+        merged.debt *= std::exp(-m_h / kForget);
     }
     for (size_t k = 0; k < group.size(); ++k) {
         if (!group[k].step->endsWithWorldStep()) continue;

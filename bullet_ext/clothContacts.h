@@ -64,11 +64,13 @@ class ClothContacts {
         long used = 0;                     ///< world step of the last use
         long expected = 0;                 ///< world step of the last forecast
         double h = 0.0;                    ///< length of the last step (s)
+        double debt = 0.0;                 ///< energy that could not be taken yet (J)
         Points x0, v0, x, v;
     };
 
     std::vector<Part> partsOf(const std::vector<Member>& group) const;
     Merged& mergedOf(const std::vector<Member>& group);
+    void holdBack(const std::vector<Member>& group, Merged& merged) const;
     void forgetUnused();
 
     double m_thickness;

@@ -60,7 +60,6 @@ StepperFactory network(const std::string& name, const std::string& folder) {
 
 btGnnSolverSettings defaults_of(const SceneRecipe& recipe) {
     btGnnSolverSettings settings;
-    settings.layerThickness = recipe.layer_thickness;
     if (!isSmallScene(recipe)) return settings;
     settings.fabric = Fabric::soft_cotton();
     settings.friction = btGnnFriction::coulomb;

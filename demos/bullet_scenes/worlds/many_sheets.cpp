@@ -48,7 +48,5 @@ std::vector<SceneRecipe> manySheets() {
              false,
              nullptr,
              {1.5f, 1.5f, 2.2f},
-             {0, 0.4f, 0},
-             OutsideWork::none,
-             4e-3}};
+             {0, 0.4f, 0}}};
 }

@@ -17,7 +17,6 @@ struct SceneRecipe {
                                   ///< which dynamic bodies and cloth meet without gravity
     btVector3 eye, target;        ///< of the picture (m)
     OutsideWork outside_work = OutsideWork::none;
-    double layer_thickness = 0.0;  ///< btGnnSolverSettings::layerThickness (m)
 };
 
 /// All of them.
