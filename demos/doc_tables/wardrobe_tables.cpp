@@ -31,14 +31,20 @@ MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
     for (const std::string& solver : distinct(rows, "/solver")) {
         const DataRow seen = files.at(0).row("rows", {{"group", groups.at(0)}, {"solver", solver}});
         std::vector<std::string> gap = {solver, "gap"}, rollout = {solver, "rollout (mm)"};
+        bool has_gap = false;  // solvers of small steps have none
         for (const std::string& group : groups) {
             const DataRow row = files.at(0).row("rows", {{"group", group}, {"solver", solver}});
-            std::string of_step =
-                significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap");
-            if (row.number("/gap_scenes") < row.number("/scenes"))
-                of_step += ", in " + decimals(row.number("/gap_scenes"), 0) + " of " +
-                           decimals(row.number("/scenes"), 0);
-            gap.push_back(of_step);
+            if (row.is_null("/gap")) {
+                gap.push_back("–");
+            } else {
+                has_gap = true;
+                std::string of_step =
+                    significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap");
+                if (row.number("/gap_scenes") < row.number("/scenes"))
+                    of_step += ", in " + decimals(row.number("/gap_scenes"), 0) + " of " +
+                               decimals(row.number("/scenes"), 0);
+                gap.push_back(of_step);
+            }
             std::string cell =
                 significant(row.number("/rollout_mm"), 2) + times(row, seen, "/relative_rollout");
             if (row.number("/failed") > 0)
@@ -46,7 +52,7 @@ MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
                         decimals(row.number("/scenes"), 0) + " lost";
             rollout.push_back(cell);
         }
-        table.rows.push_back(gap);
+        if (has_gap) table.rows.push_back(gap);
         table.rows.push_back(rollout);
     }
     return table;

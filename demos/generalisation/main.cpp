@@ -20,8 +20,9 @@ using nlohmann::ordered_json;
 namespace {
 
 struct Options {
-    std::vector<std::string> solvers = {"quasi-newton-10", "small+0", "small+3", "medium+0",
-                                        "medium+3"};
+    std::vector<std::string> solvers = {"quasi-newton-10", "small+0",
+                                        "small+3",         "medium+0",
+                                        "small60+2s60",    "hood_fast_coarse60+0s60"};
     std::string relative_to = "quasi-newton-10";
     std::string weights;
     int frames = 45;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <regex>
 
 #include "demos/compare/json_numbers.h"
 #include "demos/compare/statistics.h"
@@ -17,6 +18,12 @@ double geometric_mean(const std::vector<double>& ratios) {
     return logarithms.empty() ? SolverRow::none : std::exp(mean(logarithms));
 }
 
+/// Solvers of small steps, such as `small60+2s60`, are not after the minimum of a whole one.
+bool takes_whole_steps(const std::string& solver) {
+    static const std::regex small_steps("[0-9]s[0-9]+");
+    return !std::regex_search(solver, small_steps);
+}
+
 /// All that one solver did in a group.
 struct Collected {
     int failed = 0;
@@ -26,14 +33,14 @@ struct Collected {
 
     void add(const SolverRow& row, const SolverRow& other, bool minimum_known) {
         ++scenes;
-        if (minimum_known) {
+        if (minimum_known && takes_whole_steps(row.solver)) {
             gap.push_back(row.gap_median);
             relative_gap.push_back(row.gap_median / other.gap_median);
         }
         if (row.first_failed_frame) ++failed;
         if (row.first_failed_frame || other.first_failed_frame) return;
-        rollout.push_back(row.rollout_rmse_mm);
-        relative_rollout.push_back(row.rollout_rmse_mm / other.rollout_rmse_mm);
+        rollout.push_back(row.fine_rmse_mm);
+        relative_rollout.push_back(row.fine_rmse_mm / other.fine_rmse_mm);
     }
 };
 
@@ -51,8 +58,9 @@ std::vector<GroupSummary> summarise(const std::string& group, const std::vector<
         const auto end = begin + static_cast<std::ptrdiff_t>(solvers.size());
         const auto other = std::find_if(
             begin, end, [&](const SolverRow& row) { return row.solver == relative_to; });
-        const bool minimum_known =
-            std::all_of(begin, end, [](const SolverRow& row) { return row.gap_median >= 0.0; });
+        const bool minimum_known = std::all_of(begin, end, [](const SolverRow& row) {
+            return row.gap_median >= 0.0 || !takes_whole_steps(row.solver);
+        });
         for (auto row = begin; row != end; ++row)
             collected[row->solver].add(*row, *other, minimum_known);
     }

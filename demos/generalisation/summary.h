@@ -15,9 +15,10 @@ struct GroupSummary {
     /// Scenes that the gaps are of. Where a solver ends below what Newton's method found, the
     /// minimum is not known, and the scene does not count.
     int gap_scenes = 0;
-    double gap = 0.0;         ///< of one step: mean over these scenes of their medians
-    double rollout_mm = 0.0;  ///< to the reference of the same steps: mean over the scenes that
-                              ///< it survived; NaN: none
+    double gap = 0.0;         ///< of one step: mean over these scenes of their medians; NaN for
+                              ///< solvers of small steps
+    double rollout_mm = 0.0;  ///< to the fine solution: mean over the scenes that it survived;
+                              ///< NaN: none
     /// The same over those of another solver in the same scene: geometric means. They do not tell
     /// how hard a scene is, so they compare groups.
     double relative_gap = 0.0, relative_rollout = 0.0;

@@ -16,7 +16,7 @@ SolverRow row(const std::string& solver, double gap, double rollout, bool fails 
     SolverRow row;
     row.solver = solver;
     row.gap_median = gap;
-    row.rollout_rmse_mm = rollout;
+    row.fine_rmse_mm = rollout;
     if (fails) row.first_failed_frame = 3;
     return row;
 }
@@ -58,6 +58,15 @@ TEST(GeneralisationSummary, GapsNeedAMinimum) {
     EXPECT_EQ(summaries[1].gap_scenes, 1);
     EXPECT_DOUBLE_EQ(summaries[0].gap, 0.1);
     EXPECT_NEAR(summaries[1].relative_gap, 2.0, 1e-12);
+}
+
+TEST(GeneralisationSummary, SolversOfSmallStepsHaveNoGap) {
+    const auto summaries =
+        summarise("g", {row("base", 0.1, 10), row("net60+2s60", -0.2, 5)}, "base");
+    EXPECT_EQ(summaries[0].gap_scenes, 1);
+    EXPECT_EQ(summaries[1].gap_scenes, 0);
+    EXPECT_TRUE(std::isnan(summaries[1].gap));
+    EXPECT_NEAR(summaries[1].relative_rollout, 0.5, 1e-12);
 }
 
 TEST(GeneralisationCases, AllNamesAreThere) {
