@@ -40,6 +40,19 @@ bool goes_beyond_goals(const Garment& garment, const SkinGoals& goals, const Poi
     });
 }
 
+/// Whether a vertex that moved has made an edge as long as in torn cloth.
+bool tears(const Garment& garment, const Points& before, const Points& after) {
+    constexpr double kTorn = 2.0;  // times its length at rest
+    const Points& rest = garment.rest().vertices;
+    const auto length = [](const Points& x, int a, int b) { return (x.row(a) - x.row(b)).norm(); };
+    return std::any_of(garment.edges().begin(), garment.edges().end(), [&](const auto& edge) {
+        const auto [a, b] = edge;
+        if (before.row(a) == after.row(a) && before.row(b) == after.row(b)) return false;
+        const double now = length(after, a, b);
+        return now > kTorn * length(rest, a, b) && now > length(before, a, b);
+    });
+}
+
 /// What a part like this takes (ms) with as many iterations as it needs to be worth its while:
 /// cloth that is cut into parts of one or two tears, and is farther off than in one step of as
 /// many.
@@ -339,13 +352,14 @@ void ClothStepper::search(const Boundary& boundary, double dt, ClothState& state
     report.times.contact += m_search_ms;
 }
 
-/// All of them, or none where goals do not allow it.
+/// All of them, or none where goals do not allow it, or it would tear the cloth.
 void ClothStepper::take_back(const Boundary& boundary, double dt, ClothState& state,
                              StepReport& report) {
     m_searched = state.x;
     const double depth =
         m_detector.take_back(boundary, m_start.x, m_solver->settings().safety_distance, 0, state.x);
-    if (goes_beyond_goals(*m_garment, boundary.goals, m_searched, state.x)) {
+    if (goes_beyond_goals(*m_garment, boundary.goals, m_searched, state.x) ||
+        tears(*m_garment, m_searched, state.x)) {
         state.x = m_searched;
         m_detector.find(boundary, m_start.x, state.x, 0);
         return;

@@ -451,6 +451,22 @@ TEST_P(ThroughFew, PointsStayWhereGoalsDoNotLetThemBack) {
     }
 }
 
+TEST_P(ThroughFew, PointsStayWhereGoingBackWouldTearTheCloth) {
+    const Points flown = m_state.x.rowwise() + m_way.transpose();
+    for (const double stretch : {1.0, 1.9}) {
+        TriMesh rest = m_garment.rest();
+        rest.vertices /= stretch;
+        const Garment garment("stretched", std::move(rest), m_garment.fabric());
+        ClothStepper stepper(garment, std::make_unique<Flying>(garment, m_way));
+        ClothState state = m_before;
+        const StepReport report = stepper.step(m_boundary, dt, state);
+        EXPECT_EQ(report.substeps, 1);
+        EXPECT_EQ(report.tunnelled.has_value(), stretch > 1.0);
+        EXPECT_EQ(report.points_tunnelled > 0, stretch > 1.0);
+        EXPECT_EQ(state.x == flown, stretch > 1.0);
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, ThroughFew, ::testing::Bool(),
                          [](const auto& scene) { return scene.param ? "mesh" : "box"; });
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
