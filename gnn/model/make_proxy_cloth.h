@@ -34,6 +34,8 @@ struct ProxyClothSettings {
 ///     const auto proxy = std::make_shared<const Garment>(make_proxy(shirt, {1000}));
 ///     const std::unique_ptr<Stepper> stepper = make_proxy_cloth(shirt, proxy);
 ///
+/// Not for layers that are one garment (merge_garments()): where they lie on each other, the fine
+/// mesh is torn.
 /// Keeps a reference to `fine`. @throws ArgumentError as EmbeddedStepper does
 std::unique_ptr<EmbeddedStepper> make_proxy_cloth(const Garment& fine,
                                                   std::shared_ptr<const Garment> proxy,
