@@ -4,6 +4,7 @@
 #include <BulletSoftBody/btSoftBody.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "bullet_ext/bodyFollower.h"
 #include "bullet_ext/softBodyGarment.h"
 #include "bullet_ext/softBodyStep.h"
+#include "bullet_ext/surplusEnergy.h"
 #include "collision/response/resolve.h"
 
 namespace cloth {
@@ -218,23 +220,6 @@ std::optional<double> energyOf(const std::vector<ClothContacts::Member>& group,
     return energy;
 }
 
-/// Takes energy (J) that came from nowhere from the motion of the vertices of mass: where none is
-/// without mass, that is pinned, from that relative to their mean motion, which keeps their
-/// momentum.
-/// @return what could not be taken (J)
-double calm(double surplus, const VectorX& masses, Points& v) {
-    const double mass = masses.sum();
-    if (!(surplus > 0.0) || !(mass > 0.0)) return std::max(0.0, surplus);
-    const double floats = masses.minCoeff() > 0.0 ? 1.0 : 0.0;
-    const Eigen::RowVector3d mean = floats / mass * (masses.transpose() * v);
-    const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
-    if (!(moving > 0.0)) return surplus;
-    const double kept = std::sqrt(1.0 - std::min(1.0, surplus / moving));
-    for (Eigen::Index i = 0; i < masses.size(); ++i)
-        if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
-    return std::max(0.0, surplus - moving);
-}
-
 }  // namespace
 
 bool askForContact(const btSoftBody& a, const btSoftBody& b) {
@@ -341,26 +326,42 @@ ClothContacts::Merged& ClothContacts::mergedOf(const std::vector<Member>& group)
     return merged;
 }
 
-/// Where the fabric took up energy that no motion can pay, and no little of it, the cloth does not
-/// go all the way. Held back for less, it would hang in the air.
-void ClothContacts::holdBack(const std::vector<Member>& group, Merged& merged) const {
+/// Contact makes no energy; nor do steps that nothing works on. What came from nowhere is taken
+/// from motion, now or later. Where the fabric took up much more than that, the cloth does not go
+/// all the way; held back for less, it would hang in the air.
+/// @param x1, v1  end of the members' own steps
+/// @param in_air  no obstacle was found
+void ClothContacts::balance(const std::vector<Member>& group, const Points& x1, const Points& v1,
+                            bool in_air, Merged& merged) const {
+    constexpr double kForget = 1.0;  // s
     constexpr double kLift = 0.013;  // m: what lifts all of the cloth by so much is little
-    const double gravity = toVec3(group.front().body->m_worldInfo->m_gravity).norm();
-    if (!(merged.debt > kLift * gravity * merged.masses.sum())) return;
-    const auto energy = [&](const Points& x) {
-        return *energyOf(group, merged.first, merged.masses, x, merged.v);
+    const auto energy = [&](const Points& x, const Points& v) {
+        return energyOf(group, merged.first, merged.masses, x, v);
     };
-    const double whole = energy(merged.x);
-    Points best = merged.x;
-    double taken = 0.0;
-    for (const double part : {0.75, 0.5, 0.25, 0.125, 0.0}) {
-        if (taken >= merged.debt) break;
-        const Points x = merged.x0 + part * (merged.x - merged.x0);
-        const double less = whole - energy(x);
-        if (less > taken) taken = less, best = x;
+    const std::optional<double> start = energy(merged.x0, merged.v0), alone = energy(x1, v1),
+                                now = energy(merged.x, merged.v);
+    if (!start || !alone || !now) return;
+    const bool end_together = std::all_of(group.begin(), group.end(), [](const Member& member) {
+        return member.step->endsWithWorldStep();
+    });
+    const bool untouched =
+        end_together && std::none_of(group.begin(), group.end(), [](const Member& member) {
+            return member.step->isWorkedOn();
+        });
+    double most = *alone;
+    if (!end_together) most = std::max(*start, *alone);
+    if (untouched) most = *start;
+    const bool floats = merged.masses.minCoeff() > 0.0;
+    merged.debt = takeFromMotion(*now - most + merged.debt, merged.masses, floats, merged.v);
+    const double little =
+        kLift * merged.masses.sum() * toVec3(group.front().body->m_worldInfo->m_gravity).norm();
+    // What floats in the air goes on as its momentum says.
+    if (untouched && !(floats && in_air) && merged.debt > little) {
+        const auto at = [&](const Points& x) { return *energy(x, merged.v); };
+        merged.debt =
+            takeFromWay(merged.debt, {0.75, 0.5, 0.25, 0.125, 0.0}, at, merged.x0, merged.x);
     }
-    merged.x = best;
-    merged.debt -= std::min(merged.debt, taken);
+    merged.debt *= std::exp(-m_h / kForget);
 }
 
 ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
@@ -388,28 +389,7 @@ ClothContacts::Report ClothContacts::resolve(const std::vector<Member>& group,
     const Report report{found.pairs + found.crossings, found.left};
     // A contact that was expected has pushed, too, if it did not come.
     if (merged.expected != m_step && merged.x == x1 && merged.v == v1) return report;
-    const auto energy = [&](const Points& x, const Points& v) {
-        return energyOf(group, merged.first, merged.masses, x, v);
-    };
-    const std::optional<double> start = energy(merged.x0, merged.v0), alone = energy(x1, v1),
-                                now = energy(merged.x, merged.v);
-    if (start && alone && now) {
-        // Contact makes no energy; nor do steps that nothing works on.
-        const auto any = [&](auto what) { return std::any_of(group.begin(), group.end(), what); };
-        const bool whole =
-            !any([](const Member& member) { return !member.step->endsWithWorldStep(); });
-        const bool stands =
-            whole && !any([](const Member& member) { return member.step->isWorkedOn(); });
-        double most = *alone;
-        if (!whole) most = std::max(*start, *alone);
-        if (stands) most = *start;
-        merged.debt = calm(*now - most + merged.debt, merged.masses, merged.v);
-        // What floats goes on as its momentum says.
-        const bool floats = merged.masses.minCoeff() > 0.0 && outside.areNone();
-        if (stands && !floats) holdBack(group, merged);
-        constexpr double kForget = 1.0;  // s
-        merged.debt *= std::exp(-m_h / kForget);
-    }
+    balance(group, x1, v1, outside.areNone(), merged);
     for (size_t k = 0; k < group.size(); ++k) {
         if (!group[k].step->endsWithWorldStep()) continue;
         const Eigen::Index first = merged.first[k], count = merged.first[k + 1] - first;

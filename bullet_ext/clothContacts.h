@@ -70,7 +70,8 @@ class ClothContacts {
 
     std::vector<Part> partsOf(const std::vector<Member>& group) const;
     Merged& mergedOf(const std::vector<Member>& group);
-    void holdBack(const std::vector<Member>& group, Merged& merged) const;
+    void balance(const std::vector<Member>& group, const Points& x1, const Points& v1, bool in_air,
+                 Merged& merged) const;
     void forgetUnused();
 
     double m_thickness;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bullet_ext/surplusEnergy.h"
+
 namespace cloth {
 
 namespace {
@@ -21,16 +23,7 @@ double motionAndHeight(const ClothStep& step, const VectorX& masses, const Cloth
 double calmCloth(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
     VectorX masses = cloth.masses;
     for (const int pin : step.garment.pins()) masses[pin] = 0.0;
-    const double mass = masses.sum();
-    if (!(mass > 0.0)) return surplus;
-    Points& v = step.to.v;
-    const Eigen::RowVector3d mean = (cloth.floats ? 1.0 / mass : 0.0) * (masses.transpose() * v);
-    const double moving = 0.5 * masses.dot((v.rowwise() - mean).rowwise().squaredNorm());
-    if (!(moving > 0.0)) return surplus;
-    const double taken = std::min(surplus, moving), kept = std::sqrt(1.0 - taken / moving);
-    for (Eigen::Index i = 0; i < masses.size(); ++i)
-        if (masses[i] > 0.0) v.row(i) = mean + kept * (v.row(i) - mean);
-    return surplus - taken;
+    return takeFromMotion(surplus, masses, cloth.floats, step.to.v);
 }
 
 /// Takes the same part of what each body gains.
@@ -100,18 +93,10 @@ double smallLift(const ClothStep& step, const EnergyBalance::Cloth& cloth) {
 
 /// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
 double holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
-    const double whole = energyAt(step, cloth, step.to.x);
-    Points best = step.to.x;
-    double taken = 0.0;
-    for (const double part : {0.5, 0.25, 0.0}) {
-        if (taken >= surplus) break;
-        Points x = step.from.x + part * (step.to.x - step.from.x);
-        for (const int pin : step.garment.pins()) x.row(pin) = step.to.x.row(pin);
-        const double less = whole - energyAt(step, cloth, x);
-        if (less > taken) taken = less, best = x;
-    }
-    step.to.x = best;
-    return std::max(0.0, surplus - taken);
+    Points from = step.from.x;
+    for (const int pin : step.garment.pins()) from.row(pin) = step.to.x.row(pin);
+    const auto energy = [&](const Points& x) { return energyAt(step, cloth, x); };
+    return takeFromWay(surplus, {0.5, 0.25, 0.0}, energy, from, step.to.x);
 }
 
 }  // namespace

@@ -20,6 +20,14 @@ std::string times(const DataRow& row, const DataRow& other, const std::string& m
     return " (" + significant(row.number(member) / other.number(member), 2) + ")";
 }
 
+std::string gap_cell(const DataRow& row, const DataRow& seen) {
+    if (row.is_null("/gap")) return "–";
+    const std::string cell = significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap");
+    if (row.number("/gap_scenes") == row.number("/scenes")) return cell;
+    return cell + ", in " + decimals(row.number("/gap_scenes"), 0) + " of " +
+           decimals(row.number("/scenes"), 0);
+}
+
 }  // namespace
 
 MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
@@ -31,20 +39,9 @@ MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
     for (const std::string& solver : distinct(rows, "/solver")) {
         const DataRow seen = files.at(0).row("rows", {{"group", groups.at(0)}, {"solver", solver}});
         std::vector<std::string> gap = {solver, "gap"}, rollout = {solver, "rollout (mm)"};
-        bool has_gap = false;  // solvers of small steps have none
         for (const std::string& group : groups) {
             const DataRow row = files.at(0).row("rows", {{"group", group}, {"solver", solver}});
-            if (row.is_null("/gap")) {
-                gap.push_back("–");
-            } else {
-                has_gap = true;
-                std::string of_step =
-                    significant(row.number("/gap"), 2) + times(row, seen, "/relative_gap");
-                if (row.number("/gap_scenes") < row.number("/scenes"))
-                    of_step += ", in " + decimals(row.number("/gap_scenes"), 0) + " of " +
-                               decimals(row.number("/scenes"), 0);
-                gap.push_back(of_step);
-            }
+            gap.push_back(gap_cell(row, seen));
             std::string cell =
                 significant(row.number("/rollout_mm"), 2) + times(row, seen, "/relative_rollout");
             if (row.number("/failed") > 0)
@@ -52,7 +49,7 @@ MarkdownTable generalisation_table(const std::vector<DataFile>& files) {
                         decimals(row.number("/scenes"), 0) + " lost";
             rollout.push_back(cell);
         }
-        if (has_gap) table.rows.push_back(gap);
+        if (!seen.is_null("/gap")) table.rows.push_back(gap);  // solvers of small steps have none
         table.rows.push_back(rollout);
     }
     return table;

@@ -18,9 +18,10 @@ double geometric_mean(const std::vector<double>& ratios) {
     return logarithms.empty() ? SolverRow::none : std::exp(mean(logarithms));
 }
 
-/// Solvers of small steps, such as `small60+2s60`, are not after the minimum of a whole one.
+/// Solvers of small steps, such as `default` and `small60+2s60`, are not after the minimum of a
+/// whole one.
 bool takes_whole_steps(const std::string& solver) {
-    static const std::regex small_steps("[0-9]s[0-9]+");
+    static const std::regex small_steps("^default|[0-9]s[0-9]+");
     return !std::regex_search(solver, small_steps);
 }
 

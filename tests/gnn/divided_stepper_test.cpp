@@ -135,7 +135,8 @@ TEST(DividedStepper, TakesTheStepsOfTheOtherOneByOne) {
             EXPECT_LT(farthest(state.v, (state.x - before) / (2 * h)), 1e-12);
             EXPECT_NEAR(state.time, 2 * (k + 1) * h, 1e-12);
         }
-        EXPECT_GT(farthest(state.x, scene.state.x), 0.02) << "the scene is no test";
+        EXPECT_GT(farthest(state.x, scene.state.x), steps < 6 ? 0.02 : 0.05)
+            << "the scene is no test";
     }
 }
 
