@@ -108,8 +108,11 @@ std::string ClothStepper::name() const {
 void ClothStepper::prepare(double dt) {
     m_solver->prepare(dt / m_substeps);
     if (m_substeps == 1) m_solver->prepare(dt / m_solver->small_steps(dt));
-    for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2)
-        m_solver->prepare(dt / std::min(parts, m_guard.max_substeps));
+    for (int parts = 2; parts < 2 * m_guard.max_substeps; parts *= 2) {
+        const double part = dt / std::min(parts, m_guard.max_substeps);
+        m_solver->prepare(part);
+        m_solver->prepare(part / m_solver->small_steps(part));
+    }
 }
 
 bool ClothStepper::set_max_ms(double ms) {
@@ -160,16 +163,15 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
     const bool may_repeat = foreseen < m_guard.max_substeps;
     if (may_repeat) m_before = state;
     const bool goes_on = same_points(m_lag.x, state.x);
-    StepReport report = foreseen == 1
-                            ? take_whole(boundary, dt, motion, state)
-                            : take_parts(foreseen, boundary, dt, Corrections::allowed, state);
+    StepReport report = foreseen == 1 ? take_whole(boundary, dt, motion, state)
+                                      : take_parts(foreseen, boundary, dt, Cut::by_motion, state);
     Lag lag = std::exchange(m_next_lag, {});
     const int asked = may_repeat ? substeps_after(report, dt, motion) : foreseen;
     const int finer = affordable(asked, report.finite ? foreseen : std::min(asked, 2));
     const bool shortened = foreseen < safe || finer < asked;
     if (finer > foreseen) {
         // What was corrected in vain, or is cut more finely now, is not worth more corrections.
-        const StepReport repeated = take_parts(finer, boundary, dt, Corrections::none, m_before);
+        const StepReport repeated = take_parts(finer, boundary, dt, Cut::again, m_before);
         if (repeated.finite || !report.finite) {
             if (repeated.finite) std::swap(state, m_before);
             report = repeated;
@@ -232,13 +234,13 @@ bool ClothStepper::is_made_for(double dt) const {
     return fixed_dt() == 0.0 || std::abs(dt - fixed_dt()) < kSame * fixed_dt();
 }
 
-StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, double dt,
-                                    Corrections corrections, ClothState& state) {
+StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, double dt, Cut cut,
+                                    ClothState& state) {
     StepReport report;
     report.converged = true;
     report.substeps = substeps;
     m_state = state;
-    add_lag(substeps, m_state);
+    add_lag(substeps * std::max(1, small_steps_of_part(cut, dt / substeps)), m_state);
     // What is cut because the settings say so obeys the settings' limits.
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
@@ -253,7 +255,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
         if (k > 0) m_trees->begin_step();
         if (m_deadline.is_set())
             m_solver->set_deadline(Deadline::in(m_deadline.left() / (substeps - k)));
-        const StepReport part = take_part(m_part.take(k), dt / substeps, limits, corrections);
+        const StepReport part = take_part(m_part.take(k), dt / substeps, limits, cut);
         add_part(part, report);
         if (!report.finite) return report;
         m_part_ms += least_ms(part, limits) / substeps;
@@ -261,7 +263,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     m_state.time = state.time + dt;
     m_next_lag.v = m_state.v;
     m_state.v = (m_state.x - state.x) / dt;
-    keep_lag(substeps, m_next_lag.v, m_state);
+    keep_lag(substeps * m_small_steps, m_next_lag.v, m_state);
     std::swap(state, m_state);
     return report;
 }
@@ -296,15 +298,27 @@ void ClothStepper::keep_lag(int parts, const Points& end_velocity, const ClothSt
     m_next_lag.v = end_velocity - state.v;
 }
 
+/// Where a step was cut because of its motion alone, contacts of each part's own are all that was
+/// missing.
+int ClothStepper::small_steps_of_part(Cut cut, double dt) const {
+    const bool may = cut == Cut::by_motion && m_substeps == 1;
+    return may ? m_solver->small_steps_of_part(dt, m_state) : 0;
+}
+
 /// Advances m_state.
 StepReport ClothStepper::take_part(const Boundary& part, double dt, const IterationLimits& limits,
-                                   Corrections corrections) {
+                                   Cut cut) {
     const double motion = is_watched() ? relative_motion(*m_garment, part, dt, m_state) : 0.0;
     const bool search_it = motion > m_guard.watch_motion;
     if (is_watched()) m_start = m_state;
-    StepReport report = m_solver->part(part, dt, limits, m_state);
+    const int count = small_steps_of_part(cut, dt);
+    m_small_steps = std::max(1, count);
+    StepReport report =
+        count > 0 ? m_solver->in_small_steps(count, part, dt, StepSolver::From::start, m_state)
+                  : m_solver->part(part, dt, limits, m_state);
+    if (count > 1 && report.finite) m_state.v = m_solver->end_velocity();
     if (search_it && report.finite) search(part, dt, m_state, report);
-    if (is_watched() && !m_deadline.is_set() && corrections == Corrections::allowed)
+    if (is_watched() && !m_deadline.is_set() && cut == Cut::by_motion)
         correct(part, dt, limits, search_it, m_state, report);
     return report;
 }

@@ -24,7 +24,9 @@ struct GuardSettings {
                         ///< LimbOverlap
     /// Steps in which an obstacle near the garment, or a pin, moves farther than this (m, relative
     /// to the garment) are cut, 0.01 to 1. Contacts are found at the start of a step within the
-    /// proximity's radius: what comes from farther away would pass through.
+    /// proximity's radius: what comes from farther away would pass through. The parts are taken in
+    /// the small steps that the settings ask for; where the cloth hardly moves, or touches itself,
+    /// or these are of Newton's method, or of a network for another length, in one of `iterations`.
     double max_motion = 0.1;
     /// Steps that leave a vertex deeper inside an obstacle than this (m, before contact projection)
     /// went past a surface, 1e-3 to 0.1. Their sub-steps are of `fine_motion`, but not where steps
@@ -38,7 +40,7 @@ struct GuardSettings {
     double watch_motion = 0.02;
     double tunnelling_motion = 0.01;  ///< (m), 1e-3 to 1
     int max_substeps = 16;            ///< 1 to 64; 1: no step is cut, and none is searched
-    IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part
+    IterationLimits iterations = IterationLimits::controlled(5, 50);  ///< of a part, in one step
 
     /// No step is cut.
     static GuardSettings limbs_alone() {
@@ -159,7 +161,7 @@ class ClothStepper : public Stepper {
         Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
 
-    enum class Corrections { none, allowed };  ///< of parts of a step
+    enum class Cut { by_motion, again };  ///< the latter's parts are not corrected
 
     bool is_made_for(double dt) const;
     void add_lag(int parts, ClothState& state) const;
@@ -170,10 +172,10 @@ class ClothStepper : public Stepper {
     void report_ignored(const Points& x, StepReport& report);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
     StepReport take_small_steps(int count, const Boundary& boundary, double dt, ClothState& state);
-    StepReport take_parts(int substeps, const Boundary& boundary, double dt,
-                          Corrections corrections, ClothState& state);
-    StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits,
-                         Corrections corrections);
+    StepReport take_parts(int substeps, const Boundary& boundary, double dt, Cut cut,
+                          ClothState& state);
+    int small_steps_of_part(Cut cut, double dt) const;
+    StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits, Cut cut);
     void correct(const Boundary& boundary, double dt, const IterationLimits& limits, bool searched,
                  ClothState& state, StepReport& report);
     void search(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
@@ -194,9 +196,10 @@ class ClothStepper : public Stepper {
     LimbOverlap m_limbs;
     TunnellingDetector m_detector;
     BoundaryPart m_part;
-    ClothState m_before;  ///< from which a step is taken again
-    ClothState m_state;   ///< during a step of parts
-    ClothState m_start;   ///< of a step, or part of one, that may be corrected
+    ClothState m_before;    ///< from which a step is taken again
+    ClothState m_state;     ///< during a step of parts
+    int m_small_steps = 1;  ///< of the last part
+    ClothState m_start;     ///< of a step, or part of one, that may be corrected
     ClothState m_corrected;
     Points m_searched;  ///< |V| x 3 (m)
     /// At the end of the last step, where it began, and at the end of the one that is being taken:

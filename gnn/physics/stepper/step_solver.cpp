@@ -54,6 +54,10 @@ std::string suffix_of(const IterationLimits& limits, char mark) {
     return text;
 }
 
+bool is_moving(const ClothState& state) {
+    return state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed;
+}
+
 }  // namespace
 
 StepSolver::StepSolver(const Garment& garment, const StepSettings& settings,
@@ -179,12 +183,21 @@ int StepSolver::small_steps(double dt) const {
 
 int StepSolver::small_steps(double dt, const ClothState& state) const {
     const int count = std::isinf(m_most_residual) ? small_steps(dt) : 1;
-    if (count == 1) return 1;
-    return state.v.rowwise().squaredNorm().maxCoeff() > rest_speed * rest_speed ? count : 1;
+    return count > 1 && is_moving(state) ? count : 1;
 }
 
-/// What is cut because of fast motion needs many iterations. The history's are cheaper, and nearer
-/// where goals are limited.
+int StepSolver::small_steps_of_part(double dt, const ClothState& state) const {
+    const bool by_history = m_settings.minimiser == MinimiserKind::quasi_newton &&
+                            m_settings.quasi_newton.hessian_cg_iterations == 0;
+    const bool has_few = m_settings.small_step_rate > 0.0 && std::isinf(m_most_residual);
+    // Layers that are thrown about come apart with many iterations only.
+    if (!by_history || !has_few || m_self_contact.on() || !is_moving(state)) return 0;
+    const int count = small_steps(dt);
+    return !m_start || start_for(dt / count) ? count : 0;
+}
+
+/// Many iterations of the history are cheaper than few steps of Newton's, and nearer where goals
+/// are limited.
 StepReport StepSolver::part(const Boundary& boundary, double dt, const IterationLimits& limits,
                             ClothState& state) {
     m_quasi_newton.set_by_hessian(limits.iterations <= newton_steps);

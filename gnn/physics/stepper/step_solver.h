@@ -174,6 +174,9 @@ class StepSolver {
     /// Of the last step, at its end (|V| x 3, m/s).
     const Points& end_velocity() const { return m_v; }
 
+    /// In how many (from From::start) a part of this length (s) is as good as in part(), where a
+    /// step was cut because of its motion; 0: in none.
+    int small_steps_of_part(double dt, const ClothState& state) const;
     /// A part of a step that was cut, from the guess. Newton's method keeps its own limits.
     virtual StepReport part(const Boundary& boundary, double dt, const IterationLimits& limits,
                             ClothState& state);

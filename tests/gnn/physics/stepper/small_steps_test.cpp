@@ -134,6 +134,39 @@ TEST_F(SmallSteps, OnABallAreNearToParts) {
     EXPECT_LT(off, 5e-3) << "m, after half a second on a ball that rises";
 }
 
+/// A ball close above the sheet that flies away in every step.
+Obstacle leaving(const ClothState& state) {
+    Obstacle ball;
+    ball.shape = ObstacleShape::sphere;
+    ball.radius = 0.05;
+    ball.pose0.translation() = Vec3(0.0, state.x.col(1).maxCoeff() + 0.08, 0.0);
+    ball.pose1.translation() = ball.pose0.translation() + Vec3(0.0, 0.15, 0.0);
+    return ball;
+}
+
+/// A cut finds contacts more often; what touches nothing moves as if there were none.
+TEST_F(SmallSteps, AreKeptInStepsThatAreCutForTheirMotion) {
+    const auto cut = [](int iterations) {
+        ClothStepperSettings settings = small(4, iterations);
+        settings.guard = GuardSettings();
+        return settings;
+    };
+    ClothStepper whole(m_hung, small(4, 300)), guarded(m_hung, cut(300)), quick(m_hung, cut(3));
+    ClothState a = moving(m_hung, Vec3(0, -0.5, 0)), b = a, c = a;
+    Boundary boundary = boundary_of(m_hung, a);
+    int steps_cut = 0;
+    for (int frame = 0; frame < 10; ++frame) {
+        boundary.obstacles = {leaving(a)};
+        EXPECT_EQ(whole.step(boundary, dt, a).substeps, 1);
+        steps_cut += guarded.step(boundary, dt, b).substeps > 1;
+        ASSERT_LT((a.x - b.x).cwiseAbs().maxCoeff(), 1e-5) << "frame " << frame;
+        ASSERT_LT((a.v - b.v).cwiseAbs().maxCoeff(), 1e-3) << "frame " << frame;
+        boundary.obstacles = {leaving(c)};
+        EXPECT_EQ(quick.step(boundary, dt, c).iterations, 4 * 3) << "frame " << frame;
+    }
+    EXPECT_GE(steps_cut, 6);
+}
+
 TEST_F(SmallSteps, ClothAtRestTakesOneStepOfAsManyIterationsAsGain) {
     ClothState a = ClothState::at_rest(m_hung), b = a;
     const Boundary boundary = boundary_of(m_hung, a);
