@@ -240,7 +240,8 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     report.converged = true;
     report.substeps = substeps;
     m_state = state;
-    add_lag(substeps * std::max(1, small_steps_of_part(cut, dt / substeps)), m_state);
+    const int all_steps = substeps * std::max(1, small_steps_of_part(cut, dt / substeps));
+    add_lag(all_steps, m_state);
     // What is cut because the settings say so obeys the settings' limits.
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
@@ -263,7 +264,7 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     m_state.time = state.time + dt;
     m_next_lag.v = m_state.v;
     m_state.v = (m_state.x - state.x) / dt;
-    keep_lag(substeps * m_small_steps, m_next_lag.v, m_state);
+    keep_lag(all_steps, m_next_lag.v, m_state);
     std::swap(state, m_state);
     return report;
 }
@@ -312,7 +313,6 @@ StepReport ClothStepper::take_part(const Boundary& part, double dt, const Iterat
     const bool search_it = motion > m_guard.watch_motion;
     if (is_watched()) m_start = m_state;
     const int count = small_steps_of_part(cut, dt);
-    m_small_steps = std::max(1, count);
     StepReport report =
         count > 0 ? m_solver->in_small_steps(count, part, dt, StepSolver::From::start, m_state)
                   : m_solver->part(part, dt, limits, m_state);

@@ -196,10 +196,9 @@ class ClothStepper : public Stepper {
     LimbOverlap m_limbs;
     TunnellingDetector m_detector;
     BoundaryPart m_part;
-    ClothState m_before;    ///< from which a step is taken again
-    ClothState m_state;     ///< during a step of parts
-    int m_small_steps = 1;  ///< of the last part
-    ClothState m_start;     ///< of a step, or part of one, that may be corrected
+    ClothState m_before;  ///< from which a step is taken again
+    ClothState m_state;   ///< during a step of parts
+    ClothState m_start;   ///< of a step, or part of one, that may be corrected
     ClothState m_corrected;
     Points m_searched;  ///< |V| x 3 (m)
     /// At the end of the last step, where it began, and at the end of the one that is being taken:
