@@ -55,8 +55,9 @@ struct StepReport {
     /// how far the farthest of them is beyond (m).
     int vertices_beyond_goals = 0;
     double max_goal_excess = 0.0;
-    int tangles = 0;  ///< edges of the garment that pass through its faces after the step; counted
-                      ///< with self-contact on only
+    /// Edges of the garment that pass through its faces after the step; counted with self-contact
+    /// on only, and not where limbs that the cloth ignores overlap its own.
+    int tangles = 0;
     Vec3 first_tangle = Vec3::Zero();  ///< where the first of them is (m)
     StageTimes times;
 

@@ -30,6 +30,7 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings,
     check_range("LimbOverlapSettings.margin", settings.margin, 1e-3, 0.05);
     check_range("LimbOverlapSettings.least_cover", settings.least_cover, 0.0, 0.2);
     check_range("LimbOverlapSettings.pinch_cover", settings.pinch_cover, 0.0, 0.2);
+    check_range("LimbOverlapSettings.layer_room", settings.layer_room, 0.0, 0.1);
 }
 
 /// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
@@ -281,6 +282,7 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
         const int i = m_rows[k];
         const auto vertex = static_cast<size_t>(i);
         const auto& cover = m_covers[k];
+        if (cover && marks_overlapped()) m_overlapped[vertex] = 1;
         if (!cover || !(cover->depth > m_settings.least_cover)) continue;
         m_without[vertex] = ~limb_at(boundary, m_near_own.obstacle[vertex], cover->face);
         m_next.push_back(i);
@@ -303,18 +305,25 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     }
     find_own_limbs(boundary, state.x);
     std::fill(m_pinched.begin(), m_pinched.end(), 0);
+    m_overlapped = boundary.overlapped;
+    if (marks_overlapped()) m_overlapped.resize(m_own.size(), 0);
     m_x = state.x + dt * state.v;
     m_boxes.fit(boundary, m_has_limbs, StepEnd::start);
     find_covered(boundary, state.x, StepEnd::start);  // all starts before the ends: one refit
     ignore_covered();
     ignore_folded_at_start(boundary, state.x);
     release(boundary, state.x, m_x);
+    mark_overlapped(boundary, state.x, StepEnd::start);
     m_boxes.fit(boundary, m_has_limbs, StepEnd::end);
     ignore_folded_at_end(boundary, m_x);
     find_covered(boundary, m_x, StepEnd::end);
     ignore_covered();
-    if (ignores_nothing()) return boundary;
+    mark_overlapped(boundary, m_x, StepEnd::end);
+    const auto is_marked = [](char mark) { return mark != 0; };
+    if (ignores_nothing() && std::none_of(m_overlapped.begin(), m_overlapped.end(), is_marked))
+        return boundary;
     m_boundary = boundary;
+    m_boundary.overlapped = m_overlapped;
     m_boundary.ignored_limbs = m_ignored;
     m_boundary.pinched = m_pinched;
     for (size_t i = 0; i < m_own.size(); ++i) {
@@ -333,6 +342,45 @@ void LimbOverlap::select_inside_candidates(LimbSet limb, const std::vector<char>
         m_rows.push_back(static_cast<int>(i));
         m_without[i] = ~(joined(limb) & ~m_own[i]);
     }
+}
+
+/// Marks where cloth passes through cloth. The boxes are those of this end.
+void LimbOverlap::mark_overlapped(const Boundary& boundary, const Points& x, StepEnd end) {
+    if (!marks_overlapped()) return;
+    const LimbSet ignored = ignored_by_any();
+    for (size_t limb = 0; limb < max_limbs; ++limb)
+        if ((ignored & only(limb)) != 0) mark_inside(boundary, x, end, only(limb));
+    mark_squeezed(boundary, x, end);
+}
+
+/// Vertices that are in a limb that they ignore, or no farther from it than those that still do.
+void LimbOverlap::mark_inside(const Boundary& boundary, const Points& x, StepEnd end,
+                              LimbSet limb) {
+    select_inside_candidates(limb, m_overlapped);
+    keep_rows(enough_rows, m_wanted, m_rows,
+              [&](int i) { return (m_boxes.near(x.row(i), m_settings.margin) & limb) != 0; });
+    m_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without});
+    for (const int i : m_rows)
+        if (limb_of(boundary, i) == limb && m_near.distance[i] < m_settings.margin)
+            m_overlapped[static_cast<size_t>(i)] = 1;
+}
+
+/// Vertices between their own limb's skin and another that faces it, without room for layers.
+void LimbOverlap::mark_squeezed(const Boundary& boundary, const Points& x, StepEnd end) {
+    constexpr double facing = -0.5;  // cosine between the normals of skins that face each other
+    const double room = m_settings.layer_room;
+    select_near(x, room, m_own);
+    find_own_skin(m_own_proximity, boundary, x, end);
+    for (const int i : m_rows) m_without[static_cast<size_t>(i)] = m_own[static_cast<size_t>(i)];
+    m_other_proximity.query_rows(x, m_rows, boundary, m_near, end, {&m_without, room});
+    const bool start = end == StepEnd::start;
+    const Points& normals = start ? m_near.normal0 : m_near.normal1;
+    const Points& own_normals = start ? m_near_own.normal0 : m_near_own.normal1;
+    for (const int i : m_rows)
+        if (m_near.has(i) && m_near_own.has(i) &&
+            m_near.distance[i] + m_near_own.distance[i] < room &&
+            normals.row(i).dot(own_normals.row(i)) < facing)
+            m_overlapped[static_cast<size_t>(i)] = 1;
 }
 
 IgnoredDepth LimbOverlap::measure_ignored(const Points& x, const std::vector<char>& left_out) {

@@ -19,6 +19,9 @@ struct LimbOverlapSettings {
                                 ///< it to be ignored, 0 to 0.2
     double pinch_cover = 0.04;  ///< from which on (m) the two pinch the vertex, 0 to 0.2: where
                                 ///< they only just meet, cloth that is held tears
+    double layer_room = 0.0;    ///< that two layers of cloth need between skins (m), 0 to 0.1:
+                                ///< where there is less of it, Boundary::overlapped is set. 0:
+                                ///< nowhere, which costs nothing
 };
 
 /// How far cloth is inside limbs that it ignores.
@@ -40,6 +43,8 @@ struct IgnoredDepth {
 ///   the other limb ignores it where it lies over its own limb's skin, until it is clear of it.
 ///   While it is inside, and deep in the fold, the two pinch it: without friction that holds it
 ///   there, it slips over the end of its own limb, and the arm is out of its sleeve.
+/// - Where skins overlap, or leave less room than layers of cloth need, these cannot all stay on
+///   their own skins and apart: Boundary::overlapped says so, if the settings ask for it.
 ///
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
@@ -58,8 +63,8 @@ class LimbOverlap {
                          Proximity* searches = nullptr);
 
     /// The boundary with the limbs that are ignored in the step that begins added to
-    /// Boundary::ignored_limbs and what is pinched in Boundary::pinched; itself, if no vertex
-    /// ignores any. It is valid until the next call.
+    /// Boundary::ignored_limbs and what is pinched in Boundary::pinched; itself, if there is
+    /// nothing to add. It is valid until the next call.
     const Boundary& filter(const Boundary& boundary, double dt, const ClothState& state);
 
     /// How far the vertices are inside limbs that they ignored in the last step, at its end. What
@@ -91,6 +96,10 @@ class LimbOverlap {
     void ignore_folded_at_start(const Boundary& boundary, const Points& x);
     void ignore_folded_at_end(const Boundary& boundary, const Points& x);
     void ignore_folded(const Boundary& boundary, const Points& x, StepEnd end);
+    bool marks_overlapped() const { return m_settings.layer_room > 0.0; }
+    void mark_overlapped(const Boundary& boundary, const Points& x, StepEnd end);
+    void mark_inside(const Boundary& boundary, const Points& x, StepEnd end, LimbSet limb);
+    void mark_squeezed(const Boundary& boundary, const Points& x, StepEnd end);
     LimbSet above(const SurfaceContacts& contacts, int row, StepEnd end) const;
     LimbSet ignored_by_any() const;
     bool ignores_nothing() const { return ignored_by_any() == 0; }
@@ -114,6 +123,7 @@ class LimbOverlap {
     std::vector<LimbSet> m_unjoined;  ///< |V|: limbs not joined to its own; 0: it has no own limb
     std::vector<LimbSet> m_ignored;   ///< |V|
     std::vector<char> m_pinched;      ///< |V|: in this step
+    std::vector<char> m_overlapped;   ///< |V|: in this step; empty: it is not looked for
     std::vector<char> m_deep;         ///< of m_next: deep enough in the fold to be pinched
     std::vector<LimbSet> m_keep;      ///< |V|: limbs that are not clear of the vertex
     std::vector<LimbSet> m_without;   ///< |V|: limbs that a query passes over

@@ -107,37 +107,70 @@ void ElementGroups::make_groups() {
 }
 
 void ElementGroups::find(const Points& x, const Points& motion, double reach, int threads) {
-    m_reach = static_cast<float>(reach);
     m_groups.find(x, motion, reach, threads);
-    update(x, motion);
-}
-
-void ElementGroups::update(const Points& x, const Points& motion) {
-    if (x.rows() == 0) return;
-    const Vec3 origin = x.row(0);
-    const double size = (x.rowwise() - x.row(0)).cwiseAbs().maxCoeff();
-    m_rounding = static_cast<float>(rounding * size + 1e-12);
-    m_box_reach =
-        m_reach + 2.0f * (m_rounding + static_cast<float>(rounding * motion.cwiseAbs().maxCoeff()));
-    for (Corners& corners : m_corners)
-        for (size_t lane = 0; lane < width && corners.vertex[lane] >= 0; ++lane) {
-            const Vec3 at = x.row(corners.vertex[lane]), moved = motion.row(corners.vertex[lane]);
-            put(at - origin, lane, corners.at);
-            put(moved, lane, corners.motion);
-        }
-    for (size_t group = 0; group < m_discs.size(); ++group) update(x, motion, origin, group);
-    for (Rods& rods : m_rods) update(x, motion, origin, rods);
+    m_found = m_groups.found();
+    measure(x, motion, reach);
+    for (size_t group = 0; group < m_groups.count(); ++group) update(x, motion, group);
     if (m_which == Which::near) return;
     m_places.resize(static_cast<size_t>(x.rows()));
     for (size_t i = 0; i < m_places.size(); ++i)
         for (Eigen::Index axis = 0; axis < 3; ++axis)
             m_places[i][static_cast<size_t>(axis)] =
-                static_cast<float>(x(static_cast<Eigen::Index>(i), axis) - origin[axis]);
+                static_cast<float>(x(static_cast<Eigen::Index>(i), axis) - m_origin[axis]);
     for (size_t group = 0; group < m_rings.size(); ++group) update_rings(group);
 }
 
-void ElementGroups::update(const Points& x, const Points& motion, const Vec3& origin,
-                           size_t group) {
+void ElementGroups::find_changed(const Points& x, const Points& motion,
+                                 const std::vector<char>& changed, double reach, int threads) {
+    m_groups.find(x, motion, reach, threads);
+    measure(x, motion, reach);
+    m_changed.resize(m_groups.count());
+    for (size_t group = 0; group < m_groups.count(); ++group) {
+        m_changed[group] = has_any(changed, group) ? 1 : 0;
+        if (m_changed[group]) update(x, motion, group);
+    }
+    m_found.clear();
+    for (const auto& pair : m_groups.found())
+        if (m_changed[static_cast<size_t>(pair[0])] || m_changed[static_cast<size_t>(pair[1])])
+            m_found.push_back(pair);
+}
+
+void ElementGroups::measure(const Points& x, const Points& motion, double reach) {
+    if (x.rows() == 0) return;
+    m_origin = x.row(0);
+    m_reach = static_cast<float>(reach);
+    const double size = (x.rowwise() - x.row(0)).cwiseAbs().maxCoeff();
+    m_rounding = static_cast<float>(rounding * size + 1e-12);
+    m_box_reach =
+        m_reach + 2.0f * (m_rounding + static_cast<float>(rounding * motion.cwiseAbs().maxCoeff()));
+}
+
+bool ElementGroups::has_any(const std::vector<char>& marked, size_t group) const {
+    for (const int face : m_discs[group].face) {
+        if (face < 0) break;
+        for (int k = 0; k < 3; ++k)
+            if (marked[static_cast<size_t>(m_elements.faces()(face, k))]) return true;
+    }
+    return false;
+}
+
+void ElementGroups::update(const Points& x, const Points& motion, size_t group) {
+    update_faces(x, motion, group);
+    for (size_t c = m_begin[group].corners; c < m_begin[group + 1].corners; ++c)
+        update(x, motion, m_corners[c]);
+    for (size_t r = m_begin[group].rods; r < m_begin[group + 1].rods; ++r)
+        update(x, motion, m_rods[r]);
+}
+
+void ElementGroups::update(const Points& x, const Points& motion, Corners& corners) const {
+    for (size_t lane = 0; lane < width && corners.vertex[lane] >= 0; ++lane) {
+        const Vec3 at = x.row(corners.vertex[lane]), moved = motion.row(corners.vertex[lane]);
+        put(at - m_origin, lane, corners.at);
+        put(moved, lane, corners.motion);
+    }
+}
+
+void ElementGroups::update_faces(const Points& x, const Points& motion, size_t group) {
     Discs& discs = m_discs[group];
     Eigen::AlignedBox3d places, moves;
     for (size_t lane = 0; lane < width && discs.face[lane] >= 0; ++lane) {
@@ -149,9 +182,9 @@ void ElementGroups::update(const Points& x, const Points& motion, const Vec3& or
             return std::sqrt(std::max(
                 {(p - from).squaredNorm(), (q - from).squaredNorm(), (r - from).squaredNorm()}));
         };
-        for (const Vec3& corner : {a, b, c}) places.extend(corner - origin);
+        for (const Vec3& corner : {a, b, c}) places.extend(corner - m_origin);
         for (const Vec3& moved : {u, v, w}) moves.extend(moved);
-        put(centre - origin, lane, discs.centre);
+        put(centre - m_origin, lane, discs.centre);
         put((b - a).cross(c - a).normalized(), lane, discs.normal);
         discs.radius[lane] = static_cast<float>((1.0 + rounding) * farthest(centre, a, b, c));
         put(mean, lane, discs.motion.mean);
@@ -183,13 +216,12 @@ void ElementGroups::update_rings(size_t group) {
         }
 }
 
-void ElementGroups::update(const Points& x, const Points& motion, const Vec3& origin,
-                           Rods& rods) const {
+void ElementGroups::update(const Points& x, const Points& motion, Rods& rods) const {
     for (size_t lane = 0; lane < width && rods.edge[lane] >= 0; ++lane) {
         const auto& [a, b] = m_elements.edges()[static_cast<size_t>(rods.edge[lane])];
         const Vec3 start = x.row(a), half = 0.5 * (x.row(b).transpose() - start);
         const Vec3 moved = motion.row(a), half_motion = 0.5 * (motion.row(b).transpose() - moved);
-        put(start + half - origin, lane, rods.middle);
+        put(start + half - m_origin, lane, rods.middle);
         put(half, lane, rods.half);
         rods.length[lane] = static_cast<float>((1.0 + rounding) * half.norm());
         const Vec3 mean = moved + half_motion;

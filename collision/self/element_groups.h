@@ -31,8 +31,12 @@ class ElementGroups {
 
     /// @param x, motion  |V| x 3 (m)  @param reach  (m)  @param threads  0: as many as OpenMP gives
     void find(const Points& x, const Points& motion, double reach, int threads);
-    /// Pairs of groups, in an order that depends on the arguments of find() alone.
-    int found() const { return static_cast<int>(m_groups.found().size()); }
+    /// The same again with other motions of some vertices, for pairs that have one of these.
+    /// @param changed  |V|: not 0 where the motion differs from that of the last search
+    void find_changed(const Points& x, const Points& motion, const std::vector<char>& changed,
+                      double reach, int threads);
+    /// Pairs of groups, in an order that depends on the arguments of the search alone.
+    int found() const { return static_cast<int>(m_found.size()); }
 
     /// Calls visit(pair, f, g) for a superset of such pairs of the k-th pair of groups. They share
     /// no vertex. The first element is owned by face f, the second by g, or is g itself. Over all k
@@ -86,10 +90,13 @@ class ElementGroups {
     using Near = std::array<unsigned, most_packs>;  ///< a bit for each lane, per pack
 
     void make_groups();
-    void update(const Points& x, const Points& motion);
-    void update(const Points& x, const Points& motion, const Vec3& origin, size_t group);
+    void measure(const Points& x, const Points& motion, double reach);
+    bool has_any(const std::vector<char>& marked, size_t group) const;
+    void update(const Points& x, const Points& motion, size_t group);
+    void update_faces(const Points& x, const Points& motion, size_t group);
     void update_rings(size_t group);
-    void update(const Points& x, const Points& motion, const Vec3& origin, Rods& rods) const;
+    void update(const Points& x, const Points& motion, Corners& corners) const;
+    void update(const Points& x, const Points& motion, Rods& rods) const;
     // A bit for each lane.
     unsigned compare(const Corners& corners, const Box& box) const;
     unsigned compare(const Rods& rods, const Box& box) const;
@@ -106,6 +113,8 @@ class ElementGroups {
     SelfElements m_elements;
     std::vector<std::array<int, 3>> m_beyond_face;  ///< see OffsetRegions; near: empty
     FaceGroups m_groups;
+    std::vector<std::array<int, 2>> m_found;
+    std::vector<char> m_changed;                 ///< of each group, scratch memory
     std::vector<Begin> m_begin;                  ///< groups + 1
     std::vector<Discs> m_discs;                  ///< of each group
     std::vector<Rings> m_rings;                  ///< likewise; near: empty
@@ -113,14 +122,15 @@ class ElementGroups {
     std::vector<Box> m_boxes;
     std::vector<Rods> m_rods;
     std::vector<Corners> m_corners;
-    float m_reach = 0.0f;      ///< (m)
-    float m_rounding = 0.0f;   ///< of a difference of coordinates (m)
-    float m_box_reach = 0.0f;  ///< m_reach, with room for what is rounded off (m)
+    Vec3 m_origin = Vec3::Zero();  ///< (m): the first vertex
+    float m_reach = 0.0f;          ///< (m)
+    float m_rounding = 0.0f;       ///< of a difference of coordinates (m)
+    float m_box_reach = 0.0f;      ///< m_reach, with room for what is rounded off (m)
 };
 
 template <typename Visit>
 void ElementGroups::visit(int k, const Visit& visit) const {
-    const auto& pair = m_groups.found()[static_cast<size_t>(k)];
+    const auto& pair = m_found[static_cast<size_t>(k)];
     const auto a = static_cast<size_t>(pair[0]), b = static_cast<size_t>(pair[1]);
     visit_corners(a, b, visit);
     if (a != b) visit_corners(b, a, visit);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "collision/geometry/gather_in_order.h"
@@ -52,24 +53,64 @@ SelfCrossings::SelfCrossings(const Garment& garment, FaceParts parts)
     : m_groups(garment, ElementGroups::Which::near), m_parts_of_faces(std::move(parts)) {
 }
 
-const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads) {
+const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads,
+                                                 const std::vector<char>& overlapped) {
+    const bool goes_on = same_points(x0, m_x0) && overlapped == m_overlapped;
+    if (goes_on && same_points(x1, m_x1)) return m_found;
     m_motion = x1 - x0;
+    if (goes_on)
+        find_changed(x0, x1, threads);
+    else
+        find_all(x0, threads, overlapped);
+    m_x1 = x1;
+    return m_found;
+}
+
+void SelfCrossings::find_all(const Points& x0, int threads, const std::vector<char>& overlapped) {
+    m_x0 = x0;
+    m_overlapped = overlapped;
+    m_passed_over_none = overlapped.empty();
     m_groups.find(x0, m_motion, touching, threads);
+    m_changed.assign(static_cast<size_t>(x0.rows()), 1);
+    m_found.clear();
+    add_changed(x0, threads);
+}
+
+/// What none of whose vertices has moved is what it was.
+void SelfCrossings::find_changed(const Points& x0, const Points& x1, int threads) {
+    for (Eigen::Index i = 0; i < x1.rows(); ++i)
+        m_changed[static_cast<size_t>(i)] = x1.row(i) != m_x1.row(i) ? 1 : 0;
+    m_groups.find_changed(x0, m_motion, m_changed, touching, threads);
+    const auto has_changed = [&](const SelfPair& pair) {
+        return has_any(pair.elements, m_changed);
+    };
+    m_found.erase(std::remove_if(m_found.begin(), m_found.end(), has_changed), m_found.end());
+    add_changed(x0, threads);
+}
+
+/// Those of which a vertex has changed, in an order that says nothing of what was found before.
+void SelfCrossings::add_changed(const Points& x0, int threads) {
     std::atomic<bool> passed_over = false;
     const auto find = [&](int k, std::vector<SelfPair>& out) {
         m_groups.visit(k, [&](const ElementPair& elements, int f, int g) {
             SelfPair pair;
-            if (m_parts_of_faces.same(f, g)) return;
+            if (!has_any(elements, m_changed) || m_parts_of_faces.same(f, g) ||
+                has_any(elements, m_overlapped))
+                return;
             if (crosses(elements, x0, m_motion, pair))
                 out.push_back(pair);
             else if (closest_points(elements.edges, corners_of(elements, x0)).squared == 0.0)
                 passed_over.store(true, std::memory_order_relaxed);
         });
     };
-    gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_found, find,
+    gather_each_in_order(m_groups.found(), m_groups.worthwhile(threads), m_parts, m_new, find,
                          ElementGroups::pairs_at_once);
-    m_passed_over_none = !passed_over;
-    return m_found;
+    if (passed_over) m_passed_over_none = false;
+    m_found.insert(m_found.end(), m_new.begin(), m_new.end());
+    std::sort(m_found.begin(), m_found.end(), [](const SelfPair& a, const SelfPair& b) {
+        return std::tie(a.elements.edges, a.elements.element) <
+               std::tie(b.elements.edges, b.elements.element);
+    });
 }
 
 }  // namespace cloth

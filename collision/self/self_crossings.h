@@ -18,20 +18,31 @@ class SelfCrossings {
 
     /// Replaces found() by the pairs whose elements touch when all vertices move evenly from x0 to
     /// x1 (|V| x 3, m). None is missed whose elements are apart by more than rounding at x0; those
-    /// that are not, such as where the cloth is tangled, have no side and are passed over.
-    /// @param threads  0: as many as OpenMP gives
-    const std::vector<SelfPair>& find(const Points& x0, const Points& x1, int threads);
+    /// that are not, such as where the cloth is tangled, have no side and are passed over. From the
+    /// same x0 as before, only pairs are looked at of which a vertex goes elsewhere.
+    /// @param threads     0: as many as OpenMP gives
+    /// @param overlapped  |V|, or empty: vertices whose pairs are passed over, see Boundary
+    const std::vector<SelfPair>& find(const Points& x0, const Points& x1, int threads,
+                                      const std::vector<char>& overlapped = {});
 
-    const std::vector<SelfPair>& found() const { return m_found; }  ///< in an order of x0, x1 alone
+    /// In an order that depends on the arguments alone.
+    const std::vector<SelfPair>& found() const { return m_found; }
 
     /// Whether none was passed over: what was untangled at x0 and is not found is so at x1.
     bool passed_over_none() const { return m_passed_over_none; }
 
  private:
+    void find_all(const Points& x0, int threads, const std::vector<char>& overlapped);
+    void find_changed(const Points& x0, const Points& x1, int threads);
+    void add_changed(const Points& x0, int threads);
+
     ElementGroups m_groups;
     FaceParts m_parts_of_faces;
-    Points m_motion;  ///< |V| x 3 (m)
-    std::vector<SelfPair> m_found;
+    Points m_x0, m_x1;               ///< |V| x 3 (m): of the last search
+    std::vector<char> m_overlapped;  ///< of the last search
+    Points m_motion;                 ///< |V| x 3 (m)
+    std::vector<char> m_changed;     ///< |V|: the motion is another one than in the last search
+    std::vector<SelfPair> m_found, m_new;
     std::vector<std::vector<SelfPair>> m_parts;
     bool m_passed_over_none = false;
 };

@@ -32,6 +32,13 @@ inline std::array<Vec3, 4> corners_of(const ElementPair& pair, const Points& x) 
             x.row(pair.vertex[3])};
 }
 
+/// Whether one of a pair's vertices is marked (|V|, or empty).
+inline bool has_any(const ElementPair& pair, const std::vector<char>& marked) {
+    if (marked.empty()) return false;
+    const auto is = [&](size_t k) { return marked[static_cast<size_t>(pair.vertex[k])] != 0; };
+    return is(0) || is(1) || is(2) || is(3);
+}
+
 /// Which elements are whose, so that pairs of faces make each pair of elements once, however many
 /// faces share it: every vertex and every edge is owned by one of its faces (Curtis, Tamstorf and
 /// Manocha 2008, "Fast collision detection for deformable models using representative-triangles").

@@ -45,7 +45,16 @@ void SelfTangles::add(int edge, int face, const Points& x, std::vector<Tangle>& 
         out.push_back(tangle);
 }
 
-const std::vector<Tangle>& SelfTangles::find(const Points& x, int threads) {
+bool SelfTangles::is_at(const Tangle& tangle, const std::vector<char>& marked) const {
+    if (marked.empty()) return false;
+    const auto is = [&](int i) { return marked[static_cast<size_t>(i)] != 0; };
+    const auto& [p, q] = m_elements.edges()[static_cast<size_t>(tangle.edge)];
+    const auto at = m_elements.faces().row(tangle.face);
+    return is(p) || is(q) || is(at[0]) || is(at[1]) || is(at[2]);
+}
+
+const std::vector<Tangle>& SelfTangles::find(const Points& x, int threads,
+                                             const std::vector<char>& overlapped) {
     m_found.clear();
     if (!x.allFinite()) return m_found;
     m_faces.find(x, m_still, 0.0, threads);
@@ -56,6 +65,11 @@ const std::vector<Tangle>& SelfTangles::find(const Points& x, int threads) {
         for (const int edge : m_elements.edges_of(g)) add(edge, f, x, out);
     };
     gather_each_in_order(static_cast<int>(faces.size()), threads, m_parts, m_found, find);
+    if (!overlapped.empty())
+        m_found.erase(
+            std::remove_if(m_found.begin(), m_found.end(),
+                           [&](const Tangle& tangle) { return is_at(tangle, overlapped); }),
+            m_found.end());
     return m_found;
 }
 

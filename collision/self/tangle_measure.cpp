@@ -34,10 +34,11 @@ TangleMeasure::TangleMeasure(const Garment& garment)
         }
 }
 
-double TangleMeasure::find(const Points& x, int threads, const std::vector<char>* known) {
+double TangleMeasure::find(const Points& x, int threads, const std::vector<char>* known,
+                           const std::vector<char>& overlapped) {
     m_length = m_area = 0.0;
     m_segments.clear();
-    m_tangles.find(x, threads);
+    m_tangles.find(x, threads, overlapped);
     m_regions.find(tangles(), known);
     if (tangles().empty()) return 0.0;
     m_along.clear();

@@ -26,8 +26,10 @@ class TangleMeasure {
     explicit TangleMeasure(const Garment& garment);
 
     /// Finds the tangles at x (|V| x 3, m) and returns P (m). @param threads  0: as OpenMP gives
-    /// @param known  see TangledRegions::find()
-    double find(const Points& x, int threads, const std::vector<char>* known = nullptr);
+    /// @param known       see TangledRegions::find()
+    /// @param overlapped  see SelfTangles::find()
+    double find(const Points& x, int threads, const std::vector<char>* known = nullptr,
+                const std::vector<char>& overlapped = {});
 
     /// Of the last find(). @param x  that it was given
     double length() const { return m_length; }  ///< L (m)

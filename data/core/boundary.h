@@ -68,6 +68,9 @@ struct Boundary {
     /// |V|: not 0 where a vertex lies between two skins that are folded onto each other: friction
     /// holds it. Or empty; LimbOverlap fills it.
     std::vector<char> pinched;
+    /// |V|: not 0 where skins overlap, or leave no room for layers of cloth: there cloth passes
+    /// through cloth. Or empty; LimbOverlap can fill it.
+    std::vector<char> overlapped;
     /// Hierarchies of the mesh obstacles that all garments of a world share; null: whoever queries
     /// obstacles has its own. Results are the same. Leave it null for poses that only one garment
     /// meets, such as those of sub-steps: they would crowd out those of the world.

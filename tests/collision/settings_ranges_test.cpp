@@ -22,6 +22,7 @@ TEST(SettingsRanges, LimbOverlap) {
     expect_range("LimbOverlapSettings.margin", &S::margin, 1e-3, 0.05, use);
     expect_range("LimbOverlapSettings.least_cover", &S::least_cover, 0.0, 0.2, use);
     expect_range("LimbOverlapSettings.pinch_cover", &S::pinch_cover, 0.0, 0.2, use);
+    expect_range("LimbOverlapSettings.layer_room", &S::layer_room, 0.0, 0.1, use);
 }
 
 TEST(SettingsRanges, ContactProjection) {

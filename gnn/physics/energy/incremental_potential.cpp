@@ -87,7 +87,7 @@ IncrementalPotential::IncrementalPotential(const Garment& garment, PotentialSett
 void IncrementalPotential::begin_step(const ClothState& state, const Boundary& boundary,
                                       const SurfaceContacts& contacts, double dt,
                                       const InertialStep* inertia,
-                                      const std::vector<Tangle>* tangles) {
+                                      const std::vector<char>& unrepelled) {
     const Eigen::Index count = m_garment->vertex_count();
     if (!(dt > 0.0) || !std::isfinite(dt))
         throw ArgumentError("dt", std::to_string(dt) + " is no time step", "pass seconds, above 0");
@@ -110,7 +110,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
         {m_settings.friction_scale, m_settings.friction_distance,
          m_settings.friction_slip_speed * dt, m_settings.contact_distance,
          m_settings.contact_weight, m_settings.friction_limit, m_settings.pinch_pressure});
-    m_self_contact.begin_step(state, dt, tangles);
+    m_self_contact.begin_step(state, dt, unrepelled);
     m_layer_friction.begin_step(
         m_self_contact, state.x, m_settings.friction_slip_speed * dt,
         carrying_pairs * m_settings.friction_limit * boundary.gravity.norm());

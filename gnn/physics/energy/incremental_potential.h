@@ -84,13 +84,13 @@ class IncrementalPotential {
     /// state.x at t, or empty where there is no obstacle. External accelerations and gravity come
     /// from `boundary`.
     /// @param inertia  of the time integration; null: backward Euler
-    /// @param tangles  at t, see SelfContactEnergy::begin_step()
+    /// @param unrepelled  see SelfContactEnergy::begin_step()
     /// @throws ArgumentError if an array's size does not fit the garment, the garment has goals and
     ///         the boundary none for it, or dt is not positive
     void begin_step(const ClothState& state, const Boundary& boundary,
                     const SurfaceContacts& contacts, double dt,
                     const InertialStep* inertia = nullptr,
-                    const std::vector<Tangle>* tangles = nullptr);
+                    const std::vector<char>& unrepelled = {});
 
     EnergyTerms terms(const Points& x) const;
     double value(const Points& x) const;

@@ -24,39 +24,17 @@ SelfContactEnergy::SelfContactEnergy(const Garment& garment, const SelfContactSe
     m_area = garment.masses() / m_mean_mass;
     m_vertex_pairs.assign(static_cast<size_t>(garment.vertex_count()), 0);
     m_edge_pairs.assign(garment.edges().size(), 0);
-    m_edges = garment.edges();
-    m_faces = garment.rest().faces;
 }
 
 void SelfContactEnergy::begin_step(const ClothState& state, double dt,
-                                   const std::vector<Tangle>* tangles) {
+                                   const std::vector<char>& unrepelled) {
     if (!on()) return;
-    mark_tangled(tangles);
     m_motion = dt * state.v;
     m_proximity->find(state.x, m_motion, (1.0 + slack) * thickness(), m_settings.threads);
-    take_pairs();
+    take_pairs(unrepelled);
 }
 
-void SelfContactEnergy::mark_tangled(const std::vector<Tangle>* tangles) {
-    m_tangled.clear();
-    if (!tangles || tangles->empty()) return;
-    m_tangled.resize(static_cast<size_t>(m_area.size()), 0);
-    for (const Tangle& tangle : *tangles) {
-        for (const int i : m_edges[static_cast<size_t>(tangle.edge)])
-            m_tangled[static_cast<size_t>(i)] = 1;
-        for (int k = 0; k < 3; ++k) m_tangled[static_cast<size_t>(m_faces(tangle.face, k))] = 1;
-    }
-}
-
-bool SelfContactEnergy::is_tangled(const SelfPair& pair) const {
-    if (m_tangled.empty()) return false;
-    const auto tangled = [&](size_t k) {
-        return m_tangled[static_cast<size_t>(pair.elements.vertex[k])] != 0;
-    };
-    return tangled(0) || tangled(1) || tangled(2) || tangled(3);
-}
-
-void SelfContactEnergy::take_pairs() {
+void SelfContactEnergy::take_pairs(const std::vector<char>& unrepelled) {
     std::fill(m_vertex_pairs.begin(), m_vertex_pairs.end(), 0);
     std::fill(m_edge_pairs.begin(), m_edge_pairs.end(), 0);
     for (const SelfPair& pair : m_proximity->pairs()) {
@@ -71,7 +49,7 @@ void SelfContactEnergy::take_pairs() {
     m_pairs.clear();
     m_pairs_of_vertices = 0;
     for (const SelfPair& pair : m_proximity->pairs()) {
-        if (is_tangled(pair)) continue;
+        if (has_any(pair.elements, unrepelled)) continue;
         const std::array<int, 4>& v = pair.elements.vertex;
         const auto [first, second] = pair.elements.element;
         double share = 0.0;

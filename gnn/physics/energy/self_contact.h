@@ -6,7 +6,6 @@
 
 #include "collision/self/self_contact_settings.h"
 #include "collision/self/self_proximity.h"
-#include "collision/self/self_tangles.h"
 #include "data/core/cloth_state.h"
 
 namespace cloth {
@@ -47,10 +46,9 @@ class SelfContactEnergy {
 
     /// Finds the pairs that are near at t, or would be on the way to t + dt with the velocities at
     /// t.
-    /// @param tangles  at t: pairs of which an element belongs to one are left out, for they may be
-    ///                 on the wrong side, and hold the tangle; null: none is
-    void begin_step(const ClothState& state, double dt,
-                    const std::vector<Tangle>* tangles = nullptr);
+    /// @param unrepelled  |V|, or empty: vertices whose pairs are left out, for they may be on the
+    ///                    wrong side, and hold a tangle
+    void begin_step(const ClothState& state, double dt, const std::vector<char>& unrepelled = {});
 
     double value(const Points& x) const;
     /// Adds dE/dx (|V| x 3, N) to `gradient` and returns the energy (J).
@@ -70,20 +68,15 @@ class SelfContactEnergy {
     size_t vertex_pairs() const { return m_pairs_of_vertices; }  ///< so many have a vertex
 
  private:
-    void mark_tangled(const std::vector<Tangle>* tangles);
-    bool is_tangled(const SelfPair& pair) const;
-    void take_pairs();
+    void take_pairs(const std::vector<char>& unrepelled);
     void lift(const Pair& pair, double height, Points& x) const;
 
     SelfContactSettings m_settings;
     std::optional<SelfProximity> m_proximity;
-    VectorX m_inverse_masses;  ///< |V| (1/kg), 0 for pins
-    VectorX m_area;            ///< |V|, over the mean
-    double m_mean_mass = 0.0;  ///< (kg)
-    std::vector<std::array<int, 2>> m_edges;
-    Faces m_faces;
-    std::vector<char> m_tangled;  ///< |V|: of a tangled edge or face; empty: there is none
-    Points m_motion;              ///< |V| x 3 (m)
+    VectorX m_inverse_masses;                       ///< |V| (1/kg), 0 for pins
+    VectorX m_area;                                 ///< |V|, over the mean
+    double m_mean_mass = 0.0;                       ///< (kg)
+    Points m_motion;                                ///< |V| x 3 (m)
     std::vector<int> m_vertex_pairs, m_edge_pairs;  ///< |V|, |E|: pairs of an element
     std::vector<Pair> m_pairs;
     size_t m_pairs_of_vertices = 0;

@@ -59,6 +59,7 @@ void BoundaryPart::begin(const Garment& garment, const ClothState& state, const 
     m_part.accelerations = boundary.accelerations;
     m_part.ignored_limbs = boundary.ignored_limbs;
     m_part.pinched = boundary.pinched;
+    m_part.overlapped = boundary.overlapped;
     m_part.obstacles.resize(boundary.obstacles.size());
     m_pins_before.resize(boundary.pin_targets.rows(), 3);
     for (size_t p = 0; p < garment.pins().size(); ++p)

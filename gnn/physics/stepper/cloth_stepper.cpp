@@ -28,6 +28,13 @@ void check(const GuardSettings& settings) {
 constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
 constexpr double kOfLimit = 0.93;  // that is planned with: what contact takes varies
 
+LimbOverlapSettings limb_settings(const StepSolver* solver) {
+    constexpr double room = 3.0;  // of layers, in thicknesses: one between them, and to each skin
+    LimbOverlapSettings settings;
+    if (solver) settings.layer_room = room * solver->settings().potential.self_contact.thickness;
+    return settings;
+}
+
 /// Whether a vertex that moved is farther beyond the limits of its goal than it was.
 bool goes_beyond_goals(const Garment& garment, const SkinGoals& goals, const Points& before,
                        const Points& after) {
@@ -93,7 +100,7 @@ ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> s
       m_substeps(substeps),
       m_solver(std::move(solver)),
       m_trees(std::move(trees)),
-      m_limbs({}, m_trees, m_solver ? &m_solver->proximity() : nullptr),
+      m_limbs(limb_settings(m_solver.get()), m_trees, m_solver ? &m_solver->proximity() : nullptr),
       m_detector(garment, m_trees) {
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);

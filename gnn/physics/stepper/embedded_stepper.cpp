@@ -181,6 +181,7 @@ void EmbeddedStepper::take_boundary(const Boundary& boundary) {
     m_proxy_boundary.accelerations = of_proxy(boundary.accelerations);
     spread_limbs(m_proxy_places, boundary.ignored_limbs, m_proxy_boundary.ignored_limbs);
     m_proxy_boundary.pinched.clear();  // the proxy's stepper finds out itself
+    m_proxy_boundary.overlapped.clear();
     if (!m_fine->has_goals() || boundary.goals.empty()) return;
     SkinGoals& goals = m_proxy_boundary.goals;
     m_proxy_places.positions(boundary.goals.x0, goals.x0);

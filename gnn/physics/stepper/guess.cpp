@@ -85,7 +85,8 @@ bool is_valid_step(const Garment& garment, const ClothState& state, const Bounda
         are_goals_for(garment.goal_limits(), boundary.goals, count) &&
         (boundary.ignored_limbs.empty() ||
          boundary.ignored_limbs.size() == static_cast<size_t>(count)) &&
-        (boundary.pinched.empty() || boundary.pinched.size() == static_cast<size_t>(count));
+        (boundary.pinched.empty() || boundary.pinched.size() == static_cast<size_t>(count)) &&
+        (boundary.overlapped.empty() || boundary.overlapped.size() == static_cast<size_t>(count));
     return sizes && std::isfinite(dt) && dt > 0.0 && state.x.allFinite() && state.v.allFinite() &&
            is_finite(boundary);
 }

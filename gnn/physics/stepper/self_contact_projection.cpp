@@ -24,8 +24,16 @@ SelfContactProjection::SelfContactProjection(const Garment& garment,
     : m_settings(settings), m_pinned(garment.is_pinned()) {
     check_self_contact(settings);
     if (settings.on())
-        m_tools.emplace(Tools{SelfResolver(garment, settings), SelfTangles(garment)});
+        m_tools.emplace(
+            Tools{SelfResolver(garment, settings), SelfTangles(garment), PassingVertices(garment)});
     if (settings.untangles()) m_untangling.emplace(garment, settings);
+}
+
+const std::vector<char>& SelfContactProjection::begin_step(const Points& x0,
+                                                           const std::vector<char>& overlapped) {
+    if (!m_tools) return overlapped;
+    m_tools->passing.begin_step(x0, overlapped, tangles_at(x0));
+    return m_tools->passing.unrepelled();
 }
 
 void SelfContactProjection::finish(const Points& x0, const Untangling::Surroundings& outside,
@@ -49,8 +57,9 @@ void SelfContactProjection::part_layers(const Points& x0, const Untangling::Surr
     const auto& [boundary, proximity, goals, distance, contacts] = outside;
     const bool obstacles = !boundary.obstacles.empty();
     for (int pass = 0; pass < passes; ++pass) {
-        const SelfResolveReport resolved = m_tools->resolver.resolve(
-            x0, obstacles ? contacts : m_none, distance, x, tangled, goals.goals());
+        const SelfResolveReport resolved =
+            m_tools->resolver.resolve(x0, obstacles ? contacts : m_none, distance, x, tangled,
+                                      goals.goals(), m_tools->passing.passing());
         m_last.crossings += resolved.crossings;
         m_last.rounds += resolved.rounds;
         m_last.rigid = std::max(m_last.rigid, resolved.rigid);
@@ -66,15 +75,18 @@ void SelfContactProjection::part_layers(const Points& x0, const Untangling::Surr
     }
 }
 
-void SelfContactProjection::count_tangles(const Points& x, StepReport& report) {
+void SelfContactProjection::count_tangles(const Points& x, const std::vector<char>& overlapped,
+                                          StepReport& report) {
     if (!m_tools || !x.allFinite()) return;
     if (same(x, m_next_untangled)) {
         m_untangled.swap(m_next_untangled);
         return;
     }
-    report_tangles(m_tools->tangles.find(x, m_settings.threads), x, report);
+    report_tangles(m_tools->tangles.find(x, m_settings.threads), x, overlapped, report);
 }
 
+/// Null: there are none, or nobody untangles them. Looks for them only where x is not what the last
+/// step ended with.
 const std::vector<Tangle>* SelfContactProjection::tangles_at(const Points& x) {
     if (!m_untangling || same(x, m_untangled)) return nullptr;
     if (!same(x, m_tangled)) keep(m_tools->tangles.find(x, m_settings.threads), x);
@@ -84,14 +96,22 @@ const std::vector<Tangle>* SelfContactProjection::tangles_at(const Points& x) {
 void SelfContactProjection::untangle(const Untangling::Surroundings& outside, double dt,
                                      ClothState& state, StepReport& report) {
     if (!m_untangling || report.tangles == 0) return;
-    if (m_untangling->run(outside, dt, state).moves > 0)
-        report_tangles(m_untangling->tangles(), state.x, report);
+    if (m_untangling->run(outside, dt, state).moves == 0) return;
+    const std::vector<char>& overlapped = outside.boundary.overlapped;
+    report_tangles(overlapped.empty() ? m_untangling->tangles()
+                                      : m_tools->tangles.find(state.x, m_settings.threads),
+                   state.x, overlapped, report);
 }
 
 void SelfContactProjection::report_tangles(const std::vector<Tangle>& tangles, const Points& x,
+                                           const std::vector<char>& overlapped,
                                            StepReport& report) {
-    report.tangles = static_cast<int>(tangles.size());
-    report.first_tangle = tangles.empty() ? Vec3(Vec3::Zero()) : tangles.front().point;
+    report.tangles = 0;
+    report.first_tangle = Vec3::Zero();
+    for (const Tangle& tangle : tangles) {
+        if (m_tools->tangles.is_at(tangle, overlapped)) continue;
+        if (report.tangles++ == 0) report.first_tangle = tangle.point;
+    }
     keep(tangles, x);
 }
 

@@ -4,6 +4,7 @@
 
 #include "collision/self/self_resolve.h"
 #include "collision/self/self_tangles.h"
+#include "gnn/physics/stepper/passing_vertices.h"
 #include "gnn/physics/stepper/untangling.h"
 #include "gnn/stepper.h"
 
@@ -17,20 +18,24 @@ class SelfContactProjection {
     /// @throws ArgumentError if a setting is out of range
     SelfContactProjection(const Garment& garment, const SelfContactSettings& settings);
 
-    /// @param x0       |V| x 3 (m): positions at t
+    /// Before each finish().
+    /// @param x0          |V| x 3 (m): positions at t
+    /// @param overlapped  see Boundary
+    /// @return  |V|, or empty: vertices that no other cloth should repel in this step, since they
+    ///          may be on the wrong side of it. Valid until the next call
+    const std::vector<char>& begin_step(const Points& x0, const std::vector<char>& overlapped);
+
+    /// @param x0       |V| x 3 (m): as in begin_step()
     /// @param outside  its goals have the last word
     /// @param x        |V| x 3 (m): positions at t + dt, pins in place
     /// @param report   max_penetration is brought up to date
     void finish(const Points& x0, const Untangling::Surroundings& outside, Points& x,
                 StepReport& report);
 
-    /// Counts them in `report`, at the end of all. Does not look for them where x is what the last
-    /// finish() made of positions without any, and nothing passed through anything.
-    void count_tangles(const Points& x, StepReport& report);
-
-    /// Tangles at the start of a step, of which untangling wants to know; null: none. Looks for
-    /// them only where x is not what the last step ended with.
-    const std::vector<Tangle>* tangles_at(const Points& x);
+    /// Counts them in `report`, at the end of all, but for those at overlapped vertices. Does not
+    /// look for them where x is what the last finish() made of positions without any, and nothing
+    /// passed through anything.
+    void count_tangles(const Points& x, const std::vector<char>& overlapped, StepReport& report);
 
     /// Untangles what the last count_tangles() counted, if the settings say so, and counts again.
     /// @param state  as the step leaves it, at the positions that were counted
@@ -42,15 +47,18 @@ class SelfContactProjection {
     const SelfResolveReport& last() const { return m_last; }
 
  private:
+    const std::vector<Tangle>* tangles_at(const Points& x);
     void part_layers(const Points& x0, const Untangling::Surroundings& outside, bool tangled,
                      Points& x, StepReport& report);
     double depth_of_moved(const SurfaceContacts& contacts);
     void keep(const std::vector<Tangle>& tangles, const Points& x);
-    void report_tangles(const std::vector<Tangle>& tangles, const Points& x, StepReport& report);
+    void report_tangles(const std::vector<Tangle>& tangles, const Points& x,
+                        const std::vector<char>& overlapped, StepReport& report);
 
     struct Tools {
         SelfResolver resolver;
         SelfTangles tangles;
+        PassingVertices passing;
     };
     std::optional<Tools> m_tools;
     std::optional<Untangling> m_untangling;

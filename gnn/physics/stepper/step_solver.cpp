@@ -262,20 +262,20 @@ bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Star
     m_last = state;
     m_last_dt = dt / parts;
     m_parts = parts;
-    const std::vector<Tangle>* const tangles = m_self_contact.tangles_at(state.x);
-    if (parts > 1) return run_small_steps(boundary, dt, start, limits, tangles, report);
-    begin(boundary, m_contacts, dt, tangles);
+    const std::vector<char>& unrepelled = m_self_contact.begin_step(state.x, boundary.overlapped);
+    if (parts > 1) return run_small_steps(boundary, dt, start, limits, unrepelled, report);
+    begin(boundary, m_contacts, dt, unrepelled);
     return minimise_part(boundary, m_contacts, start, from, limits, report);
 }
 
 /// From m_last, which goes on from part to part.
 bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart* start,
-                                 const IterationLimits& limits, const std::vector<Tangle>* tangles,
+                                 const IterationLimits& limits, const std::vector<char>& unrepelled,
                                  StepReport& report) {
     const int parts = m_parts;
     StepStart* const of_each = start ? start_for(m_last_dt) : nullptr;
     bool predicted = start && !of_each && start_for(dt) &&
-                     predict_acceleration(boundary, dt, *start, tangles, report);
+                     predict_acceleration(boundary, dt, *start, unrepelled, report);
     bool rejected = false;
     const Deadline deadline = m_deadline, for_more = m_deadline_for_more;
     m_boundary_part.begin(*m_garment, m_last, boundary, parts, BoundaryPart::Surfaces::left_out);
@@ -291,7 +291,7 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
         const SurfaceContacts& contacts = m_contact_part.take(k, m_last.x);
         share(deadline, parts - k, m_deadline);
         share(for_more, parts - k, m_deadline_for_more);
-        begin(part, contacts, m_last_dt, tangles);
+        begin(part, contacts, m_last_dt, unrepelled);
         m_quasi_newton.set_continued(k > 0);
         if (!predicted) {
             finite = minimise_part(part, contacts, of_each, Start::guess, limits, report);
@@ -312,8 +312,8 @@ bool StepSolver::run_small_steps(const Boundary& boundary, double dt, StepStart*
 
 /// What the start says of the whole step. False: it failed.
 bool StepSolver::predict_acceleration(const Boundary& boundary, double dt, StepStart& start,
-                                      const std::vector<Tangle>* tangles, StepReport& report) {
-    begin(boundary, m_contacts, dt, tangles);
+                                      const std::vector<char>& unrepelled, StepReport& report) {
+    begin(boundary, m_contacts, dt, unrepelled);
     choose_start(boundary, m_contacts, &start, IterationLimits::none(), dt, m_last, report);
     m_acceleration = (m_started - m_guess) / (dt * dt);
     return !report.prediction_rejected;
@@ -427,10 +427,10 @@ void StepSolver::find_contacts(const Boundary& boundary, const Points& x, StepEn
 
 /// From m_last on.
 void StepSolver::begin(const Boundary& boundary, const SurfaceContacts& contacts, double dt,
-                       const std::vector<Tangle>* tangles) {
+                       const std::vector<char>& unrepelled) {
     const InertialStep* inertia =
         m_time.begin_step(m_last, contacts, m_potential.settings().contact_distance, dt);
-    m_potential.begin_step(m_last, boundary, contacts, dt, inertia, tangles);
+    m_potential.begin_step(m_last, boundary, contacts, dt, inertia, unrepelled);
 }
 
 /// Leaves where to start in m_x; returns E and its gradient there if they are known.
@@ -547,7 +547,7 @@ void StepSolver::project(const Boundary& boundary, const ClothState& state, Step
     report.max_entry = resolved.max_depth_before;
     m_self_contact.finish(state.x, {boundary, m_proximity, m_goals, distance, m_contacts}, m_x,
                           report);
-    m_self_contact.count_tangles(m_x, report);
+    m_self_contact.count_tangles(m_x, boundary.overlapped, report);
     report.vertices_beyond_goals = m_goals.last().beyond;
     report.max_goal_excess = m_goals.last().max_excess;
 }

@@ -212,16 +212,16 @@ class StepSolver {
     bool run(const Boundary& boundary, double dt, StepStart* start, Start from,
              const IterationLimits& limits, int parts, const ClothState& state, StepReport& report);
     bool run_small_steps(const Boundary& boundary, double dt, StepStart* start,
-                         const IterationLimits& limits, const std::vector<Tangle>* tangles,
+                         const IterationLimits& limits, const std::vector<char>& unrepelled,
                          StepReport& report);
     bool predict_acceleration(const Boundary& boundary, double dt, StepStart& start,
-                              const std::vector<Tangle>* tangles, StepReport& report);
+                              const std::vector<char>& unrepelled, StepReport& report);
     const PotentialValue* start_from_acceleration(const Boundary& boundary,
                                                   const SurfaceContacts& contacts,
                                                   StepReport& report);
     void share(const Deadline& whole, int parts, Deadline& part) const;
     void begin(const Boundary& boundary, const SurfaceContacts& contacts, double dt,
-               const std::vector<Tangle>* tangles);
+               const std::vector<char>& unrepelled);
     bool minimise_part(const Boundary& boundary, const SurfaceContacts& contacts, StepStart* start,
                        Start from, const IterationLimits& limits, StepReport& report);
     bool undo_gain(const Boundary& boundary, const SurfaceContacts& contacts,

@@ -47,7 +47,7 @@ UntanglingReport Untangling::run(const Surroundings& outside, double dt, ClothSt
 }
 
 void Untangling::measure(const Boundary& boundary) {
-    m_size = m_measure.find(m_x, m_settings.threads);
+    m_size = m_measure.find(m_x, m_settings.threads, nullptr, boundary.overlapped);
     m_energy = energy(boundary, m_x) + m_settings.untangling_tension * m_size;
 }
 
@@ -60,7 +60,8 @@ bool Untangling::move(const Surroundings& outside) {
     for (int k = 0; k <= halvings; ++k, step *= 0.5) {
         m_trial = m_x + step * m_direction;
         hold(outside);
-        const double size = m_measure.find(m_trial, m_settings.threads, &m_wrong);
+        const double size =
+            m_measure.find(m_trial, m_settings.threads, &m_wrong, outside.boundary.overlapped);
         const double value =
             energy(outside.boundary, m_trial) + m_settings.untangling_tension * size;
         if (!(value < m_energy)) continue;
@@ -70,7 +71,7 @@ bool Untangling::move(const Surroundings& outside) {
         if (m_measure.regions().left_out()) measure(outside.boundary);
         return true;
     }
-    m_measure.find(m_x, m_settings.threads);
+    m_measure.find(m_x, m_settings.threads, nullptr, outside.boundary.overlapped);
     return false;
 }
 

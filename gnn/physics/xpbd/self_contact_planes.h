@@ -15,9 +15,9 @@ class SelfContactPlanes {
     /// @throws ArgumentError if a setting is out of range
     SelfContactPlanes(const Garment& garment, const SelfContactSettings& settings);
 
-    /// @param tangles  at t, see SelfContactEnergy::begin_step()
-    void begin_step(const ClothState& state, double dt, const std::vector<Tangle>* tangles) {
-        m_energy.begin_step(state, dt, tangles);
+    /// @param unrepelled  see SelfContactEnergy::begin_step()
+    void begin_step(const ClothState& state, double dt, const std::vector<char>& unrepelled) {
+        m_energy.begin_step(state, dt, unrepelled);
     }
 
     /// Moves pairs that are nearer than the thickness, or than at t where that is less, apart

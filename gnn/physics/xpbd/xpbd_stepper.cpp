@@ -68,7 +68,7 @@ StepReport XpbdStepper::step(const Boundary& boundary, double dt, ClothState& st
     const Clock::time_point contact = Clock::now();
     resolve(boundary, dt, report);
     if (m_settings.self_contact.on()) finish_self_contact(boundary, dt, state, report);
-    m_self_contact.count_tangles(m_x, report);
+    m_self_contact.count_tangles(m_x, boundary.overlapped, report);
     if (m_garment->has_goals()) finish_goals(dt, state, report);
     report.times.contact = milliseconds_since(contact);
     report.finite = finish(dt, state);
@@ -105,7 +105,7 @@ void XpbdStepper::start(const Boundary& boundary, double dt, const ClothState& s
     m_prepared_dt = dt;
     m_planes.begin_step(*m_garment, state.x, boundary, m_contacts, m_settings.contact_distance,
                         m_settings.substeps);
-    m_self_planes.begin_step(state, dt, m_self_contact.tangles_at(state.x));
+    m_self_planes.begin_step(state, dt, m_self_contact.begin_step(state.x, boundary.overlapped));
     m_goals.begin_step(boundary.goals, dt, m_settings.substeps);
     m_w.setZero(state.x.rows(), 4);
     m_w.leftCols<3>() = state.v;

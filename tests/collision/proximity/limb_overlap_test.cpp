@@ -6,7 +6,7 @@
 
 #include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
-#include "tests/test_meshes.h"
+#include "tests/two_limbs.h"
 
 namespace cloth::limb_overlap_test {
 namespace {
@@ -15,53 +15,6 @@ using namespace test;
 
 constexpr double dt = 1.0 / 30.0;
 constexpr LimbSet trunk = 1, arm = 2;
-
-/// A ball (limb 0) around the origin and a smaller one (limb 1) in one mesh.
-/// @param joined  by a face between them, as an arm is to its trunk
-class TwoLimbs {
- public:
-    explicit TwoLimbs(bool joined) {
-        const TriMesh ball = icosphere(3);
-        m_count = ball.vertices.rows();
-        m_ball = ball.vertices;
-        Faces faces(2 * ball.faces.rows() + (joined ? 1 : 0), 3);
-        faces.topRows(ball.faces.rows()) = ball.faces;
-        faces.middleRows(ball.faces.rows(), ball.faces.rows()) =
-            ball.faces.array() + static_cast<int>(m_count);
-        if (joined) {
-            Eigen::Index out = 0, in = 0;  // where they meet
-            ball.vertices.col(0).maxCoeff(&out);
-            ball.vertices.col(0).minCoeff(&in);
-            const int a = static_cast<int>(m_count + in), b = static_cast<int>(out);
-            faces.bottomRows(1) << a, b, b;
-        }
-        auto limbs = std::make_shared<std::vector<std::uint8_t>>(size_t(faces.rows()), 1);
-        std::fill_n(limbs->begin(), ball.faces.rows(), 0);
-        m_faces = std::make_shared<const Faces>(faces);
-        m_limbs = limbs;
-    }
-
-    /// The arm's centre moves along x from `from` to `to`.
-    Boundary boundary(double from, double to) const {
-        Obstacle body;
-        body.faces = m_faces;
-        body.limbs = m_limbs;
-        body.x0 = vertices(from);
-        body.x1 = vertices(to);
-        return boundary_of({body});
-    }
-
- private:
-    Points vertices(double x) const {
-        Points all(2 * m_count, 3);
-        all << 0.15 * m_ball, (0.05 * m_ball).rowwise() + Eigen::RowVector3d(x, 0, 0);
-        return all;
-    }
-    Eigen::Index m_count;
-    Points m_ball;
-    std::shared_ptr<const Faces> m_faces;
-    std::shared_ptr<const std::vector<std::uint8_t>> m_limbs;
-};
 
 /// Cloth that hugs the trunk, 2 mm off.
 ClothState shell() {
@@ -170,6 +123,67 @@ TEST(LimbOverlap, ASleeveFollowsItsArmIntoTheTrunk) {
         EXPECT_EQ((ignored_limbs(outside, static_cast<int>(i)) & trunk) != 0, depth > 0.0) << i;
         EXPECT_EQ(is_pinched(outside, i), depth > 0.0) << i;
     }
+}
+
+TEST(LimbOverlap, SaysWhereSkinsOverlapUnderLayers) {
+    constexpr double margin = 0.01, little = 0.003;  // what balls of triangles leave open
+    LimbOverlapSettings settings;
+    settings.layer_room = 1e-4;
+    for (const bool joined : {false, true})
+        for (const bool is_sleeve : {false, true}) {
+            const TwoLimbs body(joined);
+            LimbOverlap limbs(settings), silent;
+            const ClothState before = is_sleeve ? sleeve(0.3) : shell();
+            const Boundary apart = body.boundary(0.3, 0.3), in = body.boundary(0.14, 0.14);
+            EXPECT_TRUE(limbs.filter(apart, dt, before).overlapped.empty());
+            silent.filter(apart, dt, before);
+            const ClothState folded = is_sleeve ? sleeve(0.14) : shell();
+            const Boundary& outside = limbs.filter(in, dt, folded);
+            EXPECT_TRUE(silent.filter(in, dt, folded).overlapped.empty());
+            ASSERT_EQ(outside.overlapped.size(), size_t(folded.x.rows()));
+            int marked = 0, clear = 0;
+            for (Eigen::Index i = 0; i < folded.x.rows(); ++i) {
+                const Eigen::RowVector3d other(is_sleeve ? 0.0 : 0.14, 0, 0);
+                const double distance =
+                    (folded.x.row(i) - other).norm() - (is_sleeve ? 0.15 : 0.05);
+                const bool ignored = ignored_limbs(outside, static_cast<int>(i)) != 0;
+                const double reach = ignored ? margin : 0.0;
+                if (distance < reach - little && ignored) {
+                    EXPECT_NE(outside.overlapped[size_t(i)], 0) << i;
+                    ++marked;
+                }
+                if (distance > reach + little) {
+                    EXPECT_EQ(outside.overlapped[size_t(i)], 0) << i;
+                    ++clear;
+                }
+            }
+            EXPECT_GT(marked, 2);
+            EXPECT_GT(clear, 5);
+        }
+}
+
+TEST(LimbOverlap, SaysWhereSkinsLeaveNoRoomForLayers) {
+    const TwoLimbs body(false);
+    const Boundary near = body.boundary(0.205, 0.205);  // 5 mm between the skins
+    const ClothState state = shell();
+    const auto marked = [&](double room) {
+        LimbOverlapSettings settings;
+        settings.layer_room = room;
+        LimbOverlap limbs(settings);
+        const std::vector<char> overlapped = limbs.filter(near, dt, state).overlapped;
+        for (Eigen::Index i = 0; i < state.x.rows() && !overlapped.empty(); ++i) {
+            const Eigen::RowVector3d x = state.x.row(i), centre(0.205, 0, 0);
+            const double between = x.norm() - 0.15 + (x - centre).norm() - 0.05;
+            const bool facing = x.normalized().dot((x - centre).normalized()) < -0.5;
+            if (std::abs(between - room) < 0.002) continue;
+            EXPECT_EQ(overlapped[size_t(i)] != 0, between < room && facing) << i;
+        }
+        return std::count(overlapped.begin(), overlapped.end(), 1);
+    };
+    EXPECT_EQ(marked(0.004), 0);
+    EXPECT_GT(marked(0.012), 0);
+    EXPECT_GT(marked(0.03), marked(0.012));
+    EXPECT_EQ(marked(0.0), 0);
 }
 
 /// How much of the trunk (m) lies over the skin of an arm at `arm_x` below a point near it; below

@@ -126,6 +126,56 @@ TEST(SelfCrossings, SayWhetherElementsThatTouchWerePassedOver) {
     EXPECT_FALSE(crossings.passed_over_none()) << "two sheets at one place";
 }
 
+bool are_same(const std::vector<SelfPair>& some, const std::vector<SelfPair>& others) {
+    return std::equal(some.begin(), some.end(), others.begin(), others.end(),
+                      [](const SelfPair& a, const SelfPair& b) {
+                          return key_of(a.elements) == key_of(b.elements) && a.weight == b.weight &&
+                                 a.normal == b.normal && a.distance == b.distance;
+                      });
+}
+
+TEST(SelfCrossings, WhatWasFoundBeforeChangesNothing) {
+    const Garment garment = strip();
+    SelfCrossings goes_on(garment);
+    std::mt19937 random(5);
+    Points x = wound(garment.rest().vertices, 8e-3), end = x + crumpling(x, 1e-2);
+    std::vector<char> overlapped;
+    size_t most = 0, least = 1000000;
+    for (int search = 0; search < 60; ++search) {
+        if (search % 20 == 19) x += crumpling(x, 1e-3);
+        if (search % 30 == 25) overlapped.assign(size_t(x.rows()), 0), overlapped[7] = 1;
+        const double share = std::pow(uniform(random, 0.0, 1.0), 4.0);  // mostly few
+        for (Eigen::Index i = 0; i < x.rows(); ++i)
+            if (uniform(random, 0.0, 1.0) < share) end.row(i) += random_point(random, 5e-3);
+        SelfCrossings afresh(garment);
+        const auto& found = goes_on.find(x, end, 1 + search % 3, overlapped);
+        ASSERT_TRUE(are_same(found, afresh.find(x, end, 1, overlapped))) << search;
+        EXPECT_EQ(goes_on.passed_over_none(), afresh.passed_over_none());
+        most = std::max(most, found.size());
+        least = std::min(least, found.size());
+    }
+    EXPECT_GT(least, 50u);
+    EXPECT_GT(most, 2 * least);
+}
+
+TEST(SelfCrossings, PassOverOverlappedVertices) {
+    const Garment garment = strip();
+    const Points x = wound(garment.rest().vertices, 8e-3), end = x + crumpling(x, 1e-2);
+    std::vector<char> overlapped(size_t(x.rows()), 0);
+    for (size_t i = 0; i < overlapped.size(); i += 9) overlapped[i] = 1;
+    std::vector<SelfPair> expected = SelfCrossings(garment).find(x, end, 1);
+    const size_t all = expected.size();
+    expected.erase(
+        std::remove_if(expected.begin(), expected.end(),
+                       [&](const SelfPair& pair) { return has_any(pair.elements, overlapped); }),
+        expected.end());
+    ASSERT_LT(expected.size(), all);
+    ASSERT_GT(expected.size(), 20u);
+    SelfCrossings crossings(garment);
+    EXPECT_TRUE(are_same(crossings.find(x, end, 1, overlapped), expected));
+    EXPECT_FALSE(crossings.passed_over_none());
+}
+
 TEST(Crosses, FlatClothThatSlidesInItsPlaneDoesNot) {
     const Garment garment = strip();
     SelfCrossings crossings(garment);
@@ -285,6 +335,19 @@ TEST(SelfResolver, ATangledStartIsLeftNoWorse) {
     EXPECT_EQ(resolver.resolve(x0, {}, 0.0, x).left, 0);
     EXPECT_TRUE(x.allFinite());
     EXPECT_LE(tangles.find(x).size(), tangled);
+}
+
+TEST(SelfResolver, LetsOverlappedClothPass) {
+    const MergedGarments sheets = two_sheets(5e-3);
+    SelfResolver resolver(sheets.garment, settings());
+    const Points x0 = sheets.garment.rest().vertices;
+    Points through = x0;
+    for (Eigen::Index i = sheets.first_vertex[1]; i < x0.rows(); ++i) through(i, 1) -= 0.02;
+    Points x = through;
+    const std::vector<char> all(size_t(x0.rows()), 1);
+    EXPECT_EQ(resolver.resolve(x0, {}, 0.0, x, false, {}, all).crossings, 0);
+    EXPECT_EQ(x, through);
+    EXPECT_GT(resolver.resolve(x0, {}, 0.0, x).crossings, 0);
 }
 
 TEST(SelfResolver, RefusesSettingsOutOfRange) {

@@ -134,6 +134,28 @@ TEST(TangleMeasure, AreaIsThatOfTheSmallerSide) {
     }
 }
 
+TEST(TangleMeasure, TanglesOfOverlappedVerticesDoNotCount) {
+    const MergedGarments sheets = crossed_sheets(0.07);
+    const Points& x = sheets.garment.rest().vertices;
+    TangleMeasure measure(sheets.garment);
+    measure.find(x, 1);
+    const std::vector<Tangle> all = measure.tangles();
+    std::vector<char> overlapped(size_t(x.rows()), 0);
+    const SelfTangles tangles(sheets.garment);
+    for (Eigen::Index i = 0; i < x.rows(); ++i) overlapped[size_t(i)] = x(i, 0) > 0.02 ? 1 : 0;
+    measure.find(x, 1, nullptr, overlapped);
+    const auto at_overlapped = [&](const Tangle& tangle) {
+        return tangles.is_at(tangle, overlapped);
+    };
+    const auto left_out = std::count_if(all.begin(), all.end(), at_overlapped);
+    EXPECT_GT(left_out, 5);
+    EXPECT_GT(measure.tangles().size(), 5u);
+    EXPECT_EQ(measure.tangles().size(), all.size() - size_t(left_out));
+    EXPECT_LT(measure.length(), 0.15);
+    overlapped.assign(overlapped.size(), 1);
+    EXPECT_EQ(measure.find(x, 1, nullptr, overlapped), 0.0);
+}
+
 TEST(TangleMeasure, IsContinuousWhereACornerComesOutOfAFace) {
     // drawn up little by little; with it, tangles come and go
     const MergedGarments sheets = crossed_sheets(0.09);

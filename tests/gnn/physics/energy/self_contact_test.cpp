@@ -123,6 +123,19 @@ TEST_F(SelfContactTest, ALayerThatIsThroughIsDrivenBack) {
         EXPECT_GT(pair.distance(through), 2.5e-3);
 }
 
+TEST_F(SelfContactTest, VerticesThatNothingRepelsMakeNoPairs) {
+    const size_t all = energy.pairs().size();
+    std::vector<char> unrepelled(size_t(state.x.rows()), 0);
+    for (size_t i = 0; i < unrepelled.size(); i += 10) unrepelled[i] = 1;
+    energy.begin_step(state, dt, unrepelled);
+    EXPECT_LT(energy.pairs().size(), all);
+    EXPECT_GT(energy.pairs().size(), all / 3);
+    for (const SelfContactEnergy::Pair& pair : energy.pairs())
+        for (const int i : pair.vertex) EXPECT_EQ(unrepelled[size_t(i)], 0);
+    energy.begin_step(state, dt);
+    EXPECT_EQ(energy.pairs().size(), all);
+}
+
 TEST(SelfContact, ForceDoesNotDependOnTheMesh) {
     std::vector<double> forces;
     for (const int vertices : {150, 600}) {

@@ -11,6 +11,7 @@
 #include "collision/self/self_tangles.h"
 #include "gnn/physics/stepper/cloth_stepper.h"
 #include "gnn/physics/xpbd/xpbd_stepper.h"
+#include "tests/two_limbs.h"
 
 namespace cloth::self_contact_scenes_test {
 namespace {
@@ -184,6 +185,48 @@ TEST(SelfContactScenes, SameBitsForAnyNumberOfThreads) {
         three.step(scene.boundary, dt, b);
     }
     EXPECT_TRUE(a.x == b.x);
+}
+
+/// Skins that pass through each other take the cloth on them along.
+TEST(SelfContactScenes, LayersOnLimbsThatOverlapStayOnTheirLimbs) {
+    constexpr int frames = 24, still = 4;
+    constexpr double apart = 0.25, deepest = 0.13;
+    const auto place = [&](int frame) {  // there and back
+        const double turn = 2.0 * M_PI * std::min(frame, frames) / frames;
+        return apart + (deepest - apart) * 0.5 * (1.0 - std::cos(turn));
+    };
+    const auto shell = [](double radius, double x) {
+        TriMesh ball = icosphere(3);
+        ball.vertices = (radius * ball.vertices).rowwise() + Eigen::RowVector3d(x, 0, 0);
+        return Garment("shell", ball, Fabric::soft_cotton());
+    };
+    const MergedGarments shells =
+        merge_garments("shells", {shell(0.153, 0.0), shell(0.053, apart)});
+    ClothStepperSettings settings = solver(4e-3);
+    settings.guard.limbs = true;
+    for (const bool joined : {false, true}) {
+        const TwoLimbs body(joined);
+        ClothStepper stepper(shells.garment, settings);
+        ClothState state = ClothState::at_rest(shells.garment);
+        double stretch = 0.0, depth = 0.0;
+        int most_inside = 0;
+        StepReport report;
+        for (int frame = 0; frame < frames + still; ++frame) {
+            Boundary boundary = body.boundary(place(frame), place(frame + 1));
+            boundary.gravity.setZero();
+            report = stepper.step(boundary, dt, state);
+            ASSERT_TRUE(report.finite);
+            most_inside = std::max(most_inside, report.vertices_in_ignored_limbs);
+            stretch = std::max(stretch, measure_stretch(shells.garment, state.x).p99);
+            depth = std::max(depth, report.max_penetration);
+        }
+        EXPECT_GT(most_inside, 300);
+        EXPECT_LT(stretch,
+                  joined ? 1.35 : 1.05);  // 1.19 without self-contact where they are joined
+        EXPECT_LT(depth, 1e-3);
+        EXPECT_EQ(report.tangles, 0);
+        EXPECT_LT(measure_stretch(shells.garment, state.x).p99, 1.03);
+    }
 }
 
 }  // namespace cloth::self_contact_scenes_test
