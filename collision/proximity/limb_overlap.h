@@ -63,8 +63,9 @@ class LimbOverlap {
                          Proximity* searches = nullptr);
 
     /// The boundary with the limbs that are ignored in the step that begins added to
-    /// Boundary::ignored_limbs and what is pinched in Boundary::pinched; itself, if there is
-    /// nothing to add. It is valid until the next call.
+    /// Boundary::ignored_limbs, what is pinched in Boundary::pinched, and Boundary::overlapped if
+    /// the settings ask for it; itself, if there is nothing to add. It is valid until the next
+    /// call.
     const Boundary& filter(const Boundary& boundary, double dt, const ClothState& state);
 
     /// How far the vertices are inside limbs that they ignored in the last step, at its end. What

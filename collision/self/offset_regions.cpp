@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "data/core/vertex_neighbours.h"
+
 namespace cloth {
 namespace {
 
@@ -23,13 +25,11 @@ OffsetRegions::OffsetRegions(const Garment& garment)
     : m_faces(garment.rest().faces),
       m_beside_edge(garment.edges().size(), {-1, -1}),
       m_beyond_face(static_cast<size_t>(garment.face_count()), {-1, -1, -1}),
-      m_neighbours(static_cast<size_t>(garment.vertex_count())) {
+      m_neighbours(vertex_neighbours(garment)) {
     std::map<std::array<int, 2>, size_t> index;
     for (size_t e = 0; e < garment.edges().size(); ++e) {
         const auto [a, b] = garment.edges()[e];
         index[{std::min(a, b), std::max(a, b)}] = e;
-        m_neighbours[static_cast<size_t>(a)].push_back(b);
-        m_neighbours[static_cast<size_t>(b)].push_back(a);
     }
     const auto edge_of = [&](Eigen::Index face, int corner) -> std::array<int, 2>& {
         const int a = m_faces(face, corner), b = m_faces(face, (corner + 1) % 3);

@@ -54,22 +54,22 @@ SelfCrossings::SelfCrossings(const Garment& garment, FaceParts parts)
 }
 
 const std::vector<SelfPair>& SelfCrossings::find(const Points& x0, const Points& x1, int threads,
-                                                 const std::vector<char>& overlapped) {
-    const bool goes_on = same_points(x0, m_x0) && overlapped == m_overlapped;
+                                                 const std::vector<char>& passing) {
+    const bool goes_on = same_points(x0, m_x0) && passing == m_passing;
     if (goes_on && same_points(x1, m_x1)) return m_found;
     m_motion = x1 - x0;
     if (goes_on)
         find_changed(x0, x1, threads);
     else
-        find_all(x0, threads, overlapped);
+        find_all(x0, threads, passing);
     m_x1 = x1;
     return m_found;
 }
 
-void SelfCrossings::find_all(const Points& x0, int threads, const std::vector<char>& overlapped) {
+void SelfCrossings::find_all(const Points& x0, int threads, const std::vector<char>& passing) {
     m_x0 = x0;
-    m_overlapped = overlapped;
-    m_passed_over_none = overlapped.empty();
+    m_passing = passing;
+    m_passed_over_none = passing.empty();
     m_groups.find(x0, m_motion, touching, threads);
     m_changed.assign(static_cast<size_t>(x0.rows()), 1);
     m_found.clear();
@@ -95,7 +95,7 @@ void SelfCrossings::add_changed(const Points& x0, int threads) {
         m_groups.visit(k, [&](const ElementPair& elements, int f, int g) {
             SelfPair pair;
             if (!has_any(elements, m_changed) || m_parts_of_faces.same(f, g) ||
-                has_any(elements, m_overlapped))
+                has_any(elements, m_passing))
                 return;
             if (crosses(elements, x0, m_motion, pair))
                 out.push_back(pair);

@@ -21,9 +21,9 @@ class SelfCrossings {
     /// that are not, such as where the cloth is tangled, have no side and are passed over. From the
     /// same x0 as before, only pairs are looked at of which a vertex goes elsewhere.
     /// @param threads     0: as many as OpenMP gives
-    /// @param overlapped  |V|, or empty: vertices whose pairs are passed over, see Boundary
+    /// @param passing     |V|, or empty: vertices whose pairs are passed over
     const std::vector<SelfPair>& find(const Points& x0, const Points& x1, int threads,
-                                      const std::vector<char>& overlapped = {});
+                                      const std::vector<char>& passing = {});
 
     /// In an order that depends on the arguments alone.
     const std::vector<SelfPair>& found() const { return m_found; }
@@ -32,16 +32,16 @@ class SelfCrossings {
     bool passed_over_none() const { return m_passed_over_none; }
 
  private:
-    void find_all(const Points& x0, int threads, const std::vector<char>& overlapped);
+    void find_all(const Points& x0, int threads, const std::vector<char>& passing);
     void find_changed(const Points& x0, const Points& x1, int threads);
     void add_changed(const Points& x0, int threads);
 
     ElementGroups m_groups;
     FaceParts m_parts_of_faces;
-    Points m_x0, m_x1;               ///< |V| x 3 (m): of the last search
-    std::vector<char> m_overlapped;  ///< of the last search
-    Points m_motion;                 ///< |V| x 3 (m)
-    std::vector<char> m_changed;     ///< |V|: the motion is another one than in the last search
+    Points m_x0, m_x1;            ///< |V| x 3 (m): of the last search
+    std::vector<char> m_passing;  ///< of the last search
+    Points m_motion;              ///< |V| x 3 (m)
+    std::vector<char> m_changed;  ///< |V|: the motion is another one than in the last search
     std::vector<SelfPair> m_found, m_new;
     std::vector<std::vector<SelfPair>> m_parts;
     bool m_passed_over_none = false;

@@ -53,13 +53,15 @@ SelfResolver::SelfResolver(const Garment& garment, const SelfContactSettings& se
 SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts& contacts,
                                         double distance, Points& x, bool may_pass,
                                         const std::vector<VertexGoal>& goals,
-                                        const std::vector<char>& overlapped) {
+                                        const std::vector<char>& passing) {
     SelfResolveReport report;
     m_moved.clear();
     m_pairs.clear();
     if (m_settings.rounds == 0) return report;
-    report.left = report.crossings =
-        static_cast<int>(m_crossings.find(x0, x, m_settings.threads, overlapped).size());
+    const auto count_crossings = [&] {
+        return static_cast<int>(m_crossings.find(x0, x, m_settings.threads, passing).size());
+    };
+    report.left = report.crossings = count_crossings();
     report.keeps_untangled = report.left == 0 && m_crossings.passed_over_none();
     if (report.left == 0) return report;
     m_before = x;
@@ -68,22 +70,18 @@ SelfResolveReport SelfResolver::resolve(const Points& x0, const SurfaceContacts&
         ++report.rounds;
         m_pairs.insert(m_pairs.end(), m_crossings.found().begin(), m_crossings.found().end());
         push(contacts, distance, goals, x);
-        report.left =
-            static_cast<int>(m_crossings.find(x0, x, m_settings.threads, overlapped).size());
+        report.left = count_crossings();
     }
     if (report.left > 0) {
         m_zones.begin(x);
         for (int round = 0; report.left > 0 && round < zone_rounds; ++round) {
             m_zones.merge(m_crossings.found());
             m_zones.apply(x0, round < turning_rounds, x);
-            report.left =
-                static_cast<int>(m_crossings.find(x0, x, m_settings.threads, overlapped).size());
+            report.left = count_crossings();
         }
         report.rigid = m_zones.vertex_count();
     }
-    if (may_pass && release_torn(contacts, x))
-        report.left =
-            static_cast<int>(m_crossings.find(x0, x, m_settings.threads, overlapped).size());
+    if (may_pass && release_torn(contacts, x)) report.left = count_crossings();
     report.keeps_untangled = report.left == 0 && m_crossings.passed_over_none();
     note_moved(x);
     return report;

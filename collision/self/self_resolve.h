@@ -50,11 +50,11 @@ class SelfResolver {
     /// @param may_pass  cloth that would be drawn out to more than 1.5 of its length is let go, and
     ///                  passes through: for what is tangled at t, and untangled afterwards
     /// @param goals     at t + dt, of vertices that are limited
-    /// @param overlapped  see SelfCrossings::find()
+    /// @param passing   |V|, or empty: vertices whose pairs may pass
     SelfResolveReport resolve(const Points& x0, const SurfaceContacts& contacts, double distance,
                               Points& x, bool may_pass = false,
                               const std::vector<VertexGoal>& goals = {},
-                              const std::vector<char>& overlapped = {});
+                              const std::vector<char>& passing = {});
 
     /// Vertices that the last resolve() may have moved, each once.
     const std::vector<int>& moved() const { return m_moved; }

@@ -27,8 +27,8 @@ class SelfTangles {
  public:
     explicit SelfTangles(const Garment& garment);
 
-    /// @param x        |V| x 3 (m); from positions that are not finite no tangles are found
-    /// @param threads  0: as many as OpenMP gives
+    /// @param x           |V| x 3 (m); from positions that are not finite no tangles are found
+    /// @param threads     0: as many as OpenMP gives
     /// @param overlapped  |V|, or empty: vertices at which tangles do not count, see Boundary
     const std::vector<Tangle>& find(const Points& x, int threads = 0,
                                     const std::vector<char>& overlapped = {});
@@ -36,7 +36,7 @@ class SelfTangles {
     /// Whether a vertex of its edge or face is marked (|V|).
     bool is_at(const Tangle& tangle, const std::vector<char>& marked) const;
 
-    const std::vector<Tangle>& found() const { return m_found; }  ///< in an order of x alone
+    const std::vector<Tangle>& found() const { return m_found; }  ///< whatever the threads
 
  private:
     void add(int edge, int face, const Points& x, std::vector<Tangle>& out) const;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "data/core/check_range.h"
+#include "data/core/vertex_neighbours.h"
 
 namespace cloth {
 
@@ -64,11 +65,7 @@ class Deck {
 };
 
 Adjacency mesh_adjacency(const Garment& garment) {
-    Adjacency neighbours(static_cast<size_t>(garment.vertex_count()));
-    for (const auto& [a, b] : garment.edges()) {
-        neighbours[static_cast<size_t>(a)].push_back(b);
-        neighbours[static_cast<size_t>(b)].push_back(a);
-    }
+    Adjacency neighbours = vertex_neighbours(garment);
     for (std::vector<int>& list : neighbours) std::sort(list.begin(), list.end());
     return neighbours;
 }

@@ -1,15 +1,13 @@
 #include "gnn/physics/stepper/passing_vertices.h"
 
+#include "data/core/vertex_neighbours.h"
+
 namespace cloth {
 
 PassingVertices::PassingVertices(const Garment& garment)
     : m_edges(garment.edges()),
       m_faces(garment.rest().faces),
-      m_neighbours(static_cast<size_t>(garment.vertex_count())) {
-    for (const auto& [p, q] : m_edges) {
-        m_neighbours[static_cast<size_t>(p)].push_back(q);
-        m_neighbours[static_cast<size_t>(q)].push_back(p);
-    }
+      m_neighbours(vertex_neighbours(garment)) {
 }
 
 void PassingVertices::begin_step(const Points& x0, const std::vector<char>& overlapped,
