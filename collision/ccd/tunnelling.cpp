@@ -9,6 +9,7 @@
 #include "collision/ccd/primitive_sweep.h"
 #include "collision/geometry/gather_in_order.h"
 #include "collision/proximity/obstacle_trees.h"
+#include "collision/response/resolve.h"
 #include "data/core/triangle.h"
 
 namespace cloth {
@@ -19,6 +20,7 @@ constexpr double least_thickness = 5e-3;  // m: thinner solids are not reported
 // Way in each coordinate that a point makes at least, relative to what it goes through.
 constexpr float least_motion = static_cast<float>(0.577 * least_thickness);
 constexpr int points_per_part = 256;  // that a thread takes at once
+constexpr int push_iterations = 3;    // of push_out_rows
 constexpr ObstacleTreesSettings own_trees{0.5, 64};
 
 using Corners = std::array<Vec3, 3>;
@@ -312,15 +314,12 @@ std::vector<int> TunnellingDetector::inside(const Boundary& boundary,
 }
 
 double TunnellingDetector::take_back(const Boundary& boundary, const Points& x0, double clearance,
-                                     int threads, Points& x) {
+                                     int threads, Points& x, NeighbourPull* pull) {
     if (m_found.empty()) return 0.0;
-    const std::vector<int> vertices = vertices_of_found();
-    std::map<int, Vec3> from;
-    for (const int vertex : vertices) from[vertex] = x.row(vertex);
+    const Points before = x;
+    std::vector<int> vertices = vertices_of_found();
     const auto put_back = [&](const std::vector<int>& rows) {
-        for (const int row : rows)
-            if (const auto place = from.find(row); place != from.end())
-                x.row(row) = place->second.transpose();
+        for (const int row : rows) x.row(row) = before.row(row);
     };
     for (const Tunnelling& through : m_found) {
         const CarriedPoint& in = through.in;
@@ -329,6 +328,13 @@ double TunnellingDetector::take_back(const Boundary& boundary, const Points& x0,
         else
             lift_corners(through, clearance, x);
     }
+    if (pull) {
+        std::vector<int> followers = pull->follow(vertices, before, x);
+        vertices.insert(vertices.end(), followers.begin(), followers.end());
+        std::sort(vertices.begin(), vertices.end());
+        m_proximity.query_rows(x, followers, boundary, m_contacts, StepEnd::end);
+        push_out_rows(m_proximity, boundary, clearance, push_iterations, followers, x, m_contacts);
+    }
     put_back(inside(boundary, vertices, x));
     search(boundary, x0, x, vertices, threads);
     if (!m_found.empty()) {
@@ -336,8 +342,8 @@ double TunnellingDetector::take_back(const Boundary& boundary, const Points& x0,
         search(boundary, x0, x, m_vertices, threads);
     }
     m_moved.assign(m_pinned.size(), 0);
-    for (const auto& [vertex, place] : from)
-        m_moved[static_cast<size_t>(vertex)] = x.row(vertex) != place.transpose();
+    for (const int vertex : vertices)
+        m_moved[static_cast<size_t>(vertex)] = x.row(vertex) != before.row(vertex);
     return m_samples.depth_beside(m_proximity, boundary, x, m_moved);
 }
 

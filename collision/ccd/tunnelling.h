@@ -8,6 +8,7 @@
 #include "collision/geometry/motion_tree.h"
 #include "collision/proximity/proximity.h"
 #include "collision/proximity/surface_samples.h"
+#include "collision/response/neighbour_pull.h"
 
 namespace cloth {
 
@@ -74,9 +75,10 @@ class TunnellingDetector {
     /// stay where they were; found() has these afterwards.
     /// @param boundary, x0, threads  as find() had them
     /// @param x  |V| x 3 (m), the x1 that find() had; changed
+    /// @param pull  brings the neighbours of what is moved along; null: they stay
     /// @return   how deep the edge midpoints and face centres beside what moved are then (m), or 0
     double take_back(const Boundary& boundary, const Points& x0, double clearance, int threads,
-                     Points& x);
+                     Points& x, NeighbourPull* pull = nullptr);
 
     /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
     /// as thick as the longest way through it; none: nothing was gone through.

@@ -26,6 +26,8 @@ void check(const GuardSettings& settings) {
 }
 
 constexpr double kVisible = 1e-3;  // m: depth inside an obstacle that counts
+constexpr double kPulled = 1.5;    // stretch from which neighbours follow what is taken back
+constexpr double kTorn = 2.0;      // stretch of torn cloth
 constexpr double kOfLimit = 0.93;  // that is planned with: what contact takes varies
 
 LimbOverlapSettings limb_settings(const StepSolver* solver) {
@@ -47,16 +49,15 @@ bool goes_beyond_goals(const Garment& garment, const SkinGoals& goals, const Poi
     });
 }
 
-/// Whether a vertex that moved has made an edge as long as in torn cloth.
-bool tears(const Garment& garment, const Points& before, const Points& after) {
-    constexpr double kTorn = 2.0;  // times its length at rest
+/// Whether a vertex that moved has made an edge longer than `most` times its length at rest.
+bool stretches(const Garment& garment, double most, const Points& before, const Points& after) {
     const Points& rest = garment.rest().vertices;
     const auto length = [](const Points& x, int a, int b) { return (x.row(a) - x.row(b)).norm(); };
     return std::any_of(garment.edges().begin(), garment.edges().end(), [&](const auto& edge) {
         const auto [a, b] = edge;
         if (before.row(a) == after.row(a) && before.row(b) == after.row(b)) return false;
         const double now = length(after, a, b);
-        return now > kTorn * length(rest, a, b) && now > length(before, a, b);
+        return now > most * length(rest, a, b) && now > length(before, a, b);
     });
 }
 
@@ -101,7 +102,8 @@ ClothStepper::ClothStepper(const Garment& garment, std::unique_ptr<StepSolver> s
       m_solver(std::move(solver)),
       m_trees(std::move(trees)),
       m_limbs(limb_settings(m_solver.get()), m_trees, m_solver ? &m_solver->proximity() : nullptr),
-      m_detector(garment, m_trees) {
+      m_detector(garment, m_trees),
+      m_pull(garment, kPulled) {
     if (!m_solver) throw ArgumentError("solver", "is null", "give the solver of one step");
     check(m_guard);
     check_range("ClothStepperSettings.substeps", substeps, 1, 64);
@@ -208,7 +210,7 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     StepReport report = small_steps > 1   ? take_small_steps(small_steps, boundary, dt, state)
                         : is_made_for(dt) ? m_solver->whole(boundary, dt, state)
                                           : m_solver->part(boundary, dt, m_guard.iterations, state);
-    if (search_it && report.finite) search(boundary, dt, state, report);
+    if (search_it && report.finite) search(boundary, dt, Neighbours::stay, state, report);
     if (should_search && !search_it) {
         report.out_of_time = true;
         m_search_ms *= 0.9;  // the next ones may be cheaper
@@ -324,7 +326,7 @@ StepReport ClothStepper::take_part(const Boundary& part, double dt, const Iterat
         count > 0 ? m_solver->in_small_steps(count, part, dt, StepSolver::From::start, m_state)
                   : m_solver->part(part, dt, limits, m_state);
     if (count > 1 && report.finite) m_state.v = m_solver->end_velocity();
-    if (search_it && report.finite) search(part, dt, m_state, report);
+    if (search_it && report.finite) search(part, dt, Neighbours::stay, m_state, report);
     if (is_watched() && !m_deadline.is_set() && cut == Cut::by_motion)
         correct(part, dt, limits, search_it, m_state, report);
     return report;
@@ -339,7 +341,7 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     StepReport corrected = m_solver->correct(boundary, dt, report.tunnelled ? &m_detector : nullptr,
                                              limits, m_corrected);
     if (!corrected.finite) return;
-    if (searched) search(boundary, dt, m_corrected, corrected);
+    if (searched) search(boundary, dt, Neighbours::may_follow, m_corrected, corrected);
     report.times += corrected.times;
     report.iterations += corrected.iterations;
     if (!are_few(corrected.points_tunnelled) ||
@@ -358,34 +360,48 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
 
 /// Looks for what a step from m_start went through. Where that are few points they are moved back
 /// to where they went in, which costs next to nothing.
-void ClothStepper::search(const Boundary& boundary, double dt, ClothState& state,
-                          StepReport& report) {
+void ClothStepper::search(const Boundary& boundary, double dt, Neighbours neighbours,
+                          ClothState& state, StepReport& report) {
     if (m_deadline.left() < m_search_ms) {
         report.out_of_time = true;
         return;
     }
     Stopwatch watch;
     const auto count = static_cast<int>(m_detector.find(boundary, m_start.x, state.x, 0).size());
-    if (count > 0 && are_few(count)) take_back(boundary, dt, state, report);
+    if (count > 0 && are_few(count)) take_back(boundary, dt, neighbours, state, report);
     report.tunnelled = m_detector.thinnest();
     report.points_tunnelled = static_cast<int>(m_detector.found().size());
     m_search_ms = watch.lap();
     report.times.contact += m_search_ms;
 }
 
-/// All of them, or none where goals do not allow it, or it would tear the cloth.
-void ClothStepper::take_back(const Boundary& boundary, double dt, ClothState& state,
-                             StepReport& report) {
+/// All of them, or none where goals do not allow it, or it would tear the cloth. Neighbours that
+/// may follow do where it would stretch the cloth much.
+void ClothStepper::take_back(const Boundary& boundary, double dt, Neighbours neighbours,
+                             ClothState& state, StepReport& report) {
+    struct Attempt {
+        NeighbourPull* pull;
+        double most_stretch;
+    };
+    std::vector<Attempt> attempts = {{nullptr, kTorn}};
+    if (neighbours == Neighbours::may_follow)
+        attempts = {{nullptr, kPulled}, {&m_pull, kTorn}, {nullptr, kTorn}};
     m_searched = state.x;
-    const double depth =
-        m_detector.take_back(boundary, m_start.x, m_solver->settings().safety_distance, 0, state.x);
-    if (goes_beyond_goals(*m_garment, boundary.goals, m_searched, state.x) ||
-        tears(*m_garment, m_searched, state.x)) {
+    for (const Attempt& attempt : attempts) {
+        if (&attempt != &attempts.front() && m_deadline.left() < m_search_ms) {
+            report.out_of_time = true;
+            break;
+        }
+        const double depth = m_detector.take_back(
+            boundary, m_start.x, m_solver->settings().safety_distance, 0, state.x, attempt.pull);
+        if (!goes_beyond_goals(*m_garment, boundary.goals, m_searched, state.x) &&
+            !stretches(*m_garment, attempt.most_stretch, m_searched, state.x)) {
+            report.max_penetration = std::max(report.max_penetration, depth);
+            break;
+        }
         state.x = m_searched;
         m_detector.find(boundary, m_start.x, state.x, 0);
-        return;
     }
-    report.max_penetration = std::max(report.max_penetration, depth);
     for (Eigen::Index i = 0; i < state.x.rows(); ++i)
         if (state.x.row(i) != m_searched.row(i))
             state.v.row(i) = (state.x.row(i) - m_start.x.row(i)) / dt;

@@ -161,7 +161,8 @@ class ClothStepper : public Stepper {
         Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
 
-    enum class Cut { by_motion, again };  ///< the latter's parts are not corrected
+    enum class Cut { by_motion, again };         ///< the latter's parts are not corrected
+    enum class Neighbours { stay, may_follow };  ///< of points that are taken back
 
     bool is_made_for(double dt) const;
     void add_lag(int parts, ClothState& state) const;
@@ -178,8 +179,10 @@ class ClothStepper : public Stepper {
     StepReport take_part(const Boundary& part, double dt, const IterationLimits& limits, Cut cut);
     void correct(const Boundary& boundary, double dt, const IterationLimits& limits, bool searched,
                  ClothState& state, StepReport& report);
-    void search(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
-    void take_back(const Boundary& boundary, double dt, ClothState& state, StepReport& report);
+    void search(const Boundary& boundary, double dt, Neighbours neighbours, ClothState& state,
+                StepReport& report);
+    void take_back(const Boundary& boundary, double dt, Neighbours neighbours, ClothState& state,
+                   StepReport& report);
     bool are_few(int points) const;
     bool went_past(const StepReport& report) const {
         return report.tunnelled || report.max_entry > m_guard.max_entry;
@@ -195,6 +198,7 @@ class ClothStepper : public Stepper {
     std::shared_ptr<ObstacleTrees> m_trees;
     LimbOverlap m_limbs;
     TunnellingDetector m_detector;
+    NeighbourPull m_pull;
     BoundaryPart m_part;
     ClothState m_before;  ///< from which a step is taken again
     ClothState m_state;   ///< during a step of parts

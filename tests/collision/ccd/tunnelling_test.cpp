@@ -247,6 +247,44 @@ TEST(Tunnelling, AreTakenBackToWhereTheyWentIn) {
     }
 }
 
+/// The middle goes back by 7 cm, onto the bar.
+TEST(Tunnelling, AreTakenBackWithTheirNeighbours) {
+    const Garment garment = sheet();
+    const Points& x = garment.rest().vertices;
+    const auto longest = [&](const Points& at) {
+        double stretch = 0.0;
+        for (const auto& [a, b] : garment.edges())
+            stretch =
+                std::max(stretch, (at.row(a) - at.row(b)).norm() / (x.row(a) - x.row(b)).norm());
+        return stretch;
+    };
+    Eigen::Index middle;
+    x.rowwise().squaredNorm().minCoeff(&middle);
+    const Vec3 size(0.02, 0.01, 0.02), beside(x(middle, 0), 0, x(middle, 2));
+    const Pose from = pose_of(beside - Vec3(0, 0.015, 0)), to = pose_of(beside + Vec3(0, 0.06, 0));
+    for (const Obstacle& bar : {moving(scaled(cube(), size), from, to),
+                                moving(primitive(ObstacleShape::box, size, 0.0), from, to)}) {
+        const Boundary boundary = boundary_of({bar});
+        const auto taken_back = [&](NeighbourPull* pull) {
+            TunnellingDetector detector(garment);
+            EXPECT_EQ(vertices_of(detector.find(boundary, x, x, 0), x.rows()).count(int(middle)),
+                      1u);
+            Points back = x;
+            detector.take_back(boundary, x, 5e-4, 0, back, pull);
+            EXPECT_TRUE(detector.found().empty());
+            EXPECT_NEAR(back(middle, 1), 0.0705, 1e-9);
+            return back;
+        };
+        EXPECT_GT(longest(taken_back(nullptr)), 1.5) << "the scene says nothing of neighbours";
+        NeighbourPull pull(garment, 1.2);
+        const Points back = taken_back(&pull);
+        EXPECT_LT(longest(back), 1.001 * 1.2 + 1e-9);
+        VectorX distance;
+        Proximity().signed_distance(back, boundary, StepEnd::end, distance);
+        EXPECT_GT(distance.minCoeff(), 0.0);
+    }
+}
+
 TEST(Tunnelling, BetweenVerticesAreHeldByContactsOfTheirOwn) {
     const Garment garment = sheet();
     const Points& x = garment.rest().vertices;

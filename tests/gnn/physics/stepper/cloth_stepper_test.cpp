@@ -467,6 +467,42 @@ TEST_P(ThroughFew, PointsStayWhereGoingBackWouldTearTheCloth) {
     }
 }
 
+/// Flies on where it should be held.
+class FlyingOn : public Flying {
+ public:
+    using Flying::Flying;
+    StepReport correct(const Boundary& boundary, double h, const TunnellingDetector*,
+                       const IterationLimits&, ClothState& state) override {
+        return whole(boundary, h, state);
+    }
+};
+
+/// Edges would be stretched from 1.6 to twice their length.
+TEST_P(ThroughFew, NeighboursFollowWhatACorrectionDoesNotHold) {
+    TriMesh rest = m_garment.rest();
+    rest.vertices /= 1.6;
+    const Garment garment("stretched", std::move(rest), m_garment.fabric());
+    m_bar.half_extents = Vec3(0.015, 0.006, 0.006);  // no more than the vertex is in its way
+    place(m_bar);
+    const auto stretch_after = [&](std::unique_ptr<StepSolver> solver, bool held) {
+        ClothState state = m_before;
+        const StepReport report =
+            ClothStepper(garment, std::move(solver)).step(m_boundary, dt, state);
+        EXPECT_EQ(report.tunnelled.has_value(), !held);
+        EXPECT_EQ(report.substeps, 1);
+        double stretch = 0.0;
+        const Points& at_rest = garment.rest().vertices;
+        for (const auto& [a, b] : garment.edges())
+            stretch = std::max(stretch, (state.x.row(a) - state.x.row(b)).norm() /
+                                            (at_rest.row(a) - at_rest.row(b)).norm());
+        return stretch;
+    };
+    auto alone = std::make_unique<Flying>(garment, m_way);
+    alone->corrections_fail = true;
+    EXPECT_LT(stretch_after(std::move(alone), false), 1.6 + 1e-9) << "nothing was moved back";
+    EXPECT_LT(stretch_after(std::make_unique<FlyingOn>(garment, m_way), true), 1.61);
+}
+
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, ThroughFew, ::testing::Bool(),
                          [](const auto& scene) { return scene.param ? "mesh" : "box"; });
 INSTANTIATE_TEST_SUITE_P(PrimitiveAndMesh, Through, ::testing::Bool(),
