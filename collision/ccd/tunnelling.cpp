@@ -9,6 +9,7 @@
 #include "collision/ccd/primitive_sweep.h"
 #include "collision/geometry/gather_in_order.h"
 #include "collision/proximity/obstacle_trees.h"
+#include "collision/response/neighbour_pull.h"
 #include "collision/response/resolve.h"
 #include "data/core/triangle.h"
 

@@ -8,9 +8,10 @@
 #include "collision/geometry/motion_tree.h"
 #include "collision/proximity/proximity.h"
 #include "collision/proximity/surface_samples.h"
-#include "collision/response/neighbour_pull.h"
 
 namespace cloth {
+
+class NeighbourPull;
 
 /// A point of an obstacle's surface at both ends of a step.
 struct CarriedPoint {

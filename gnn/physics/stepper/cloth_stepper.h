@@ -6,6 +6,7 @@
 #include "collision/ccd/tunnelling.h"
 #include "collision/proximity/limb_overlap.h"
 #include "collision/proximity/obstacle_trees.h"
+#include "collision/response/neighbour_pull.h"
 #include "gnn/physics/stepper/boundary_part.h"
 #include "gnn/physics/stepper/step_solver.h"
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "collision/proximity/brute_force.h"
+#include "collision/response/neighbour_pull.h"
 #include "data/authoring/sheet.h"
 #include "tests/test_meshes.h"
 

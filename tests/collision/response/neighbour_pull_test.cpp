@@ -36,14 +36,23 @@ int middle(const Points& x) {
     return static_cast<int>(nearest);
 }
 
-TEST(NeighbourPull, NoEdgeIsLongerThanTheLimitAfterwards) {
+class MiddleOfASheet : public ::testing::Test {
+ protected:
+    /// The sheet at rest, but for its middle.
+    Points lifted(double by) const {
+        Points x = rest;
+        x(vertex, 1) += by;
+        return x;
+    }
     const Garment garment = sheet();
     const Points& rest = garment.rest().vertices;
     const int vertex = middle(rest);
+};
+
+TEST_F(MiddleOfASheet, LeavesNoEdgeLongerThanTheLimit) {
     for (const double most : {1.05, 1.5}) {
         NeighbourPull pull(garment, most);
-        Points x = rest;
-        x(vertex, 1) += 0.2;
+        Points x = lifted(0.2);
         const Points moved = x;
         const std::vector<int> followers = pull.follow({vertex}, rest, x);
         EXPECT_LT(stretch(garment, x), 1.001 * most + 1e-9);
@@ -56,24 +65,16 @@ TEST(NeighbourPull, NoEdgeIsLongerThanTheLimitAfterwards) {
     }
 }
 
-TEST(NeighbourPull, WhatIsNotStretchedStays) {
-    const Garment garment = sheet();
-    const Points& rest = garment.rest().vertices;
-    const int vertex = middle(rest);
+TEST_F(MiddleOfASheet, TakesNothingAlongThatIsNotStretched) {
     NeighbourPull pull(garment, 1.5);
-    Points x = rest;
-    x(vertex, 1) += 0.01;
+    Points x = lifted(0.01);
     EXPECT_TRUE(pull.follow({vertex}, rest, x).empty());
     EXPECT_EQ(x.bottomRows(x.rows() - vertex - 1), rest.bottomRows(x.rows() - vertex - 1));
 }
 
-TEST(NeighbourPull, FarVerticesStayAndNearOnesFollowTheLess) {
-    const Garment garment = sheet();
-    const Points& rest = garment.rest().vertices;
-    const int vertex = middle(rest);
+TEST_F(MiddleOfASheet, TakesNoVertexFartherThanItselfAndNoFarOne) {
     NeighbourPull pull(garment, 1.5);
-    Points x = rest;
-    x(vertex, 1) += 0.15;
+    Points x = lifted(0.15);
     pull.follow({vertex}, rest, x);
     for (int i = 0; i < x.rows(); ++i) {
         const double way = (x.row(i) - rest.row(i)).norm();
@@ -83,28 +84,22 @@ TEST(NeighbourPull, FarVerticesStayAndNearOnesFollowTheLess) {
     }
 }
 
-TEST(NeighbourPull, PinsAndVerticesThatWereMovedStay) {
-    const Garment free = sheet();
-    const Points& rest = free.rest().vertices;
-    const int vertex = middle(rest);
+TEST_F(MiddleOfASheet, TakesNeitherPinsNorVerticesThatWereMovedAlong) {
     std::set<int> around;
-    for (const auto& [a, b] : free.edges()) {
+    for (const auto& [a, b] : garment.edges()) {
         if (a == vertex) around.insert(b);
         if (b == vertex) around.insert(a);
     }
     const int pin = *around.begin(), moved = *around.rbegin();
-    const Garment garment = sheet({pin});
-    NeighbourPull pull(garment, 1.2);
-    Points x = rest;
-    x(vertex, 1) += 0.2;
+    NeighbourPull pull(sheet({pin}), 1.2);
+    Points x = lifted(0.2);
     const std::vector<int> both = {std::min(vertex, moved), std::max(vertex, moved)};
     const std::vector<int> followers = pull.follow(both, rest, x);
     EXPECT_EQ(x.row(pin), rest.row(pin));
     EXPECT_EQ(x.row(moved), rest.row(moved));
     EXPECT_FALSE(followers.empty());
     // the next call knows nothing of this one
-    Points again = rest;
-    again(vertex, 1) += 0.2;
+    Points again = lifted(0.2);
     pull.follow({vertex}, rest, again);
     EXPECT_NE(again.row(moved), rest.row(moved));
 }
