@@ -216,6 +216,43 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
     for (const Crossing& crossing : m_crossings) report(crossing, boundary, obstacle, limbs);
 }
 
+std::optional<CarriedPoint> TunnellingDetector::way_in(const Boundary& boundary,
+                                                       const SurfaceSamples& samples, int sample,
+                                                       const Points& x0) const {
+    const auto row = static_cast<size_t>(sample);
+    const Obstacle& mesh =
+        boundary.obstacles[static_cast<size_t>(samples.contacts().obstacle[row])];
+    if (mesh.shape != ObstacleShape::mesh) return std::nullopt;
+    const std::shared_ptr<const MotionTree> tree =
+        (boundary.trees ? *boundary.trees : *m_trees).motion(mesh);
+    if (!tree) return std::nullopt;
+    const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+    std::vector<int> stack;
+    const Crossing crossing =
+        cross(mesh, *tree, samples.corners(sample).position(x0), samples.position(sample),
+              limbs ? samples.ignored(sample) : 0, stack);
+    const Place& in = crossing.in;
+    if (!in.known || limb_of(limbs, in.face) != limb_of(limbs, samples.contacts().face[row]))
+        return std::nullopt;
+    return carried_point(mesh, in);
+}
+
+void TunnellingDetector::add_samples(const Boundary& boundary, const Points& x0, const Points& x1,
+                                     double depth) {
+    m_proximity.query(x1, boundary, m_contacts, StepEnd::end);
+    m_samples.find_deep(m_proximity, boundary, x1, m_contacts, depth, nullptr);
+    for (const int sample : m_samples.deep()) {
+        const std::optional<CarriedPoint> in = way_in(boundary, m_samples, sample, x0);
+        if (!in) continue;
+        const int obstacle = m_samples.contacts().obstacle[static_cast<size_t>(sample)];
+        const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
+        const double thickness = (in->point1 - m_samples.position(sample)).norm();
+        m_found.push_back({static_cast<int>(x1.rows()) + sample, obstacle,
+                           limb_of(has_limbs(mesh) ? mesh.limbs.get() : nullptr, in->face),
+                           std::max(thickness, least_thickness), *in});
+    }
+}
+
 void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
                                            const Points& x1, const std::vector<int>& vertices) {
     const Obstacle& shape = boundary.obstacles[static_cast<size_t>(obstacle)];

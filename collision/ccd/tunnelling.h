@@ -48,7 +48,8 @@ struct Tunnelling {
 ///
 /// Meshes: a hierarchy of FCL's (ObstacleTrees, as in Proximity), told apart by relative motion,
 /// and FCL's continuous test of point and triangle. Primitives: conservative advancement in their
-/// own frame; that costs so little that face centres and edge midpoints are followed too.
+/// own frame; that costs so little that face centres and edge midpoints are followed too. Through
+/// meshes, only those that are still inside: add_samples().
 class TunnellingDetector {
  public:
     /// @param trees  see Proximity
@@ -80,6 +81,19 @@ class TunnellingDetector {
     /// @return   how deep the edge midpoints and face centres beside what moved are then (m), or 0
     double take_back(const Boundary& boundary, const Points& x0, double clearance, int threads,
                      Points& x, NeighbourPull* pull = nullptr);
+
+    /// Where a deep sample went into the mesh that it is in, on a straight line from where its
+    /// vertices were at t; none: it was inside before, did not move, or went in at another limb
+    /// than the one that it is nearest to, which is a fold.
+    /// @param samples  after find_deep() at t + dt
+    /// @param x0       |V| x 3 (m)
+    std::optional<CarriedPoint> way_in(const Boundary& boundary, const SurfaceSamples& samples,
+                                       int sample, const Points& x0) const;
+
+    /// Adds samples that are deeper in a mesh than `depth` (m), and whose way in is known, to
+    /// found(): a finger goes through a face without meeting a vertex.
+    /// @param x0, x1  as in find()
+    void add_samples(const Boundary& boundary, const Points& x0, const Points& x1, double depth);
 
     /// Of the solids (obstacles, or limbs) that were gone through, how thick the thinnest is (m):
     /// as thick as the longest way through it; none: nothing was gone through.

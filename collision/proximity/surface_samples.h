@@ -50,6 +50,8 @@ class SurfaceSamples {
     int count() const { return static_cast<int>(m_x.rows()); }
     /// Whether not all of its vertices are pinned.
     bool is_movable(int sample) const { return m_movable[static_cast<size_t>(sample)] != 0; }
+    /// Limbs that any vertex of a deep sample passes through.
+    LimbSet ignored(int sample) const { return m_ignored[static_cast<size_t>(sample)]; }
     const std::vector<int>& deep() const { return m_deep; }  ///< samples, ascending
     double max_depth() const;                                ///< of the deep ones, or 0 (m)
 

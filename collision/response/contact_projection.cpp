@@ -10,6 +10,7 @@ namespace {
 
 constexpr int vertex_iterations = 3;    // of push_out_rows
 constexpr double slack = 1e-4;          // m: samples lifted to within this are not lifted again
+constexpr double same_way = 0.5;        // least cosine of the angle between ways out
 constexpr double hold_distance = 1e-2;  // m: vertices further outside need no holding
 
 const ContactProjectionSettings& checked(const ContactProjectionSettings& settings) {
@@ -47,7 +48,8 @@ double ContactProjection::depth_of_free(const SurfaceContacts& contacts) const {
 }
 
 ResolveReport ContactProjection::resolve(Proximity& proximity, const Boundary& boundary,
-                                         double distance, Points& x, SurfaceContacts& contacts) {
+                                         double distance, Points& x, SurfaceContacts& contacts,
+                                         const WayIn& way_in) {
     ResolveReport report;
     if (boundary.obstacles.empty()) return report;
     proximity.query(x, boundary, contacts, StepEnd::end);
@@ -56,14 +58,14 @@ ResolveReport ContactProjection::resolve(Proximity& proximity, const Boundary& b
     report.iterations = push_out_rows(proximity, boundary, distance, vertex_iterations, m_rows, x,
                                       contacts, &report.moved);
     if (m_surface && m_settings.iterations > 0)
-        resolve_surface(proximity, boundary, distance, x, contacts, report);
+        resolve_surface(proximity, boundary, distance, x, contacts, way_in, report);
     report.max_depth_after = depth_of_free(contacts);
     return report;
 }
 
 void ContactProjection::resolve_surface(Proximity& proximity, const Boundary& boundary,
                                         double distance, Points& x, SurfaceContacts& contacts,
-                                        ResolveReport& report) {
+                                        const WayIn& way_in, ResolveReport& report) {
     const double allowed = m_settings.allowed_depth;
     m_samples.find_deep(proximity, boundary, x, contacts, allowed, nullptr);
     report.max_surface_depth_before = report.max_surface_depth_after = m_samples.max_depth();
@@ -82,7 +84,7 @@ void ContactProjection::resolve_surface(Proximity& proximity, const Boundary& bo
     keep_best();
     while (!m_samples.deep().empty() && report.surface_iterations < m_settings.iterations) {
         ++report.surface_iterations;
-        push_samples(distance, x, contacts);
+        push_samples(distance, x, contacts, way_in);
         push_vertices(proximity, boundary, distance, x, contacts);
         m_samples.find_deep(proximity, boundary, x, contacts, allowed + slack, &m_changed);
         keep_best();
@@ -92,11 +94,13 @@ void ContactProjection::resolve_surface(Proximity& proximity, const Boundary& bo
     proximity.query(x, boundary, contacts, StepEnd::end);
 }
 
-void ContactProjection::push_samples(double distance, Points& x, const SurfaceContacts& contacts) {
+void ContactProjection::push_samples(double distance, Points& x, const SurfaceContacts& contacts,
+                                     const WayIn& way_in) {
     m_push.clear();
     m_pinched.clear();
     std::fill(m_held.begin(), m_held.end(), 0);
     for (const int sample : m_samples.deep()) {
+        if (way_in && push_back(sample, way_in)) continue;
         if (PinchSides::is_pinched(m_samples, sample, x, contacts)) {
             if (!PinchSides::add_ridge_plane(m_samples, sample, x, contacts,
                                              m_settings.allowed_depth, m_push))
@@ -113,6 +117,17 @@ void ContactProjection::push_samples(double distance, Points& x, const SurfaceCo
     hold_vertices(m_samples.deep(), distance, x, contacts);
     m_guard.add_planes(x, m_push);
     m_push.solve(m_settings.sweeps, m_settings.most, x);
+}
+
+/// The plane of where a sample went in, if the nearest way out is another.
+bool ContactProjection::push_back(int sample, const WayIn& way_in) {
+    const std::optional<HalfSpace> outside = way_in(m_samples, sample);
+    if (!outside || outside->normal.dot(m_samples.way_out(sample)) > same_way ||
+        outside->normal.dot(m_samples.position(sample)) > outside->height)
+        return false;
+    const SurfaceSamples::Corners at = m_samples.corners(sample);
+    m_push.add(at.vertex, at.weight, outside->normal, outside->height - m_settings.allowed_depth);
+    return true;
 }
 
 /// Planes that keep the vertices of samples outside; not for those that are drawn through a slab.

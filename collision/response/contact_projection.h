@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "collision/proximity/surface_samples.h"
@@ -34,6 +36,9 @@ struct ContactProjectionSettings {
 /// smallest motion of their vertices that also keeps those outside, and the vertices that moved are
 /// checked again. Pinned vertices never move; x without deep samples keeps its bits.
 ///
+/// They leave by the nearest way, unless it is known where they went in: a face that a fingertip
+/// pierced is nearest to the sides of the finger, and would stay on it.
+///
 /// It cannot succeed where cloth has nowhere to go, such as between two bodies that close on it.
 /// The report says so, and x is then what had the least depth plus excess of
 /// length of an edge.
@@ -43,6 +48,9 @@ class ContactProjection {
     explicit ContactProjection(const Garment& garment,
                                const ContactProjectionSettings& settings = {});
 
+    /// Outside of where a deep sample went in; none: unknown.
+    using WayIn = std::function<std::optional<HalfSpace>(const SurfaceSamples&, int sample)>;
+
     /// Whether edges and faces are kept out from now on, as at first, if the settings say so.
     void set_surface(bool on) { m_surface = on; }
 
@@ -51,13 +59,16 @@ class ContactProjection {
     /// @param contacts  the nearest points of the resulting `x`, chosen at t + dt (without
     /// obstacles
     ///                  it is left as it is)
+    /// @param way_in    null: no way is known
     ResolveReport resolve(Proximity& proximity, const Boundary& boundary, double distance,
-                          Points& x, SurfaceContacts& contacts);
+                          Points& x, SurfaceContacts& contacts, const WayIn& way_in = nullptr);
 
  private:
     void resolve_surface(Proximity& proximity, const Boundary& boundary, double distance, Points& x,
-                         SurfaceContacts& contacts, ResolveReport& report);
-    void push_samples(double distance, Points& x, const SurfaceContacts& contacts);
+                         SurfaceContacts& contacts, const WayIn& way_in, ResolveReport& report);
+    void push_samples(double distance, Points& x, const SurfaceContacts& contacts,
+                      const WayIn& way_in);
+    bool push_back(int sample, const WayIn& way_in);
     void hold_vertices(const std::vector<int>& samples, double distance, const Points& x,
                        const SurfaceContacts& contacts);
     void push_vertices(Proximity& proximity, const Boundary& boundary, double distance, Points& x,

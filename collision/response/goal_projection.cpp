@@ -26,12 +26,14 @@ void GoalProjection::begin_step(const SkinGoals& goals) {
 
 ResolveReport GoalProjection::finish(ContactProjection& projection, Proximity& proximity,
                                      const Boundary& boundary, double distance, Points& x,
-                                     SurfaceContacts& contacts) {
-    ResolveReport report = projection.resolve(proximity, boundary, distance, x, contacts);
+                                     SurfaceContacts& contacts,
+                                     const ContactProjection::WayIn& way_in) {
+    ResolveReport report = projection.resolve(proximity, boundary, distance, x, contacts, way_in);
     if (m_goals.empty()) return report;
     resolve(proximity, boundary, distance, x, contacts);
     if (boundary.obstacles.empty() || m_last.max_move < fair_move) return report;
-    const ResolveReport again = projection.resolve(proximity, boundary, distance, x, contacts);
+    const ResolveReport again =
+        projection.resolve(proximity, boundary, distance, x, contacts, way_in);
     report.max_depth_after = again.max_depth_after;
     report.max_surface_depth_after = again.max_surface_depth_after;
     resolve(proximity, boundary, distance, x, contacts);

@@ -42,10 +42,11 @@ class GoalProjection {
     /// Contact projection, then goals, and both once more where goals moved something.
     /// @param distance  of vertices from the surfaces at t + dt (m)
     /// @param x         |V| x 3 (m), the pinned vertices in place
-    /// @param contacts  see ContactProjection::resolve()
+    /// @param contacts, way_in  see ContactProjection::resolve()
     ResolveReport finish(ContactProjection& projection, Proximity& proximity,
                          const Boundary& boundary, double distance, Points& x,
-                         SurfaceContacts& contacts);
+                         SurfaceContacts& contacts,
+                         const ContactProjection::WayIn& way_in = nullptr);
 
     /// Goals alone.
     /// @param contacts  of |V| rows where there are obstacles; brought up to date for what moves

@@ -7,6 +7,12 @@
 
 namespace cloth {
 
+/// Where normal . x >= height.
+struct HalfSpace {
+    Vec3 normal;    ///< unit
+    double height;  ///< (m)
+};
+
 /// The smallest motion, weighted with the masses, that lifts combinations of vertices above planes:
 ///
 ///     minimise  sum of m |dx|^2  where  normal . (sum of weight (x + dx)) >= height

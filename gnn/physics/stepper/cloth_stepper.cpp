@@ -204,6 +204,7 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     if (search_it)
         m_solver->set_deadline(m_deadline.earlier(m_search_ms),
                                m_deadline.earlier(std::max(0.5 * m_deadline.left(), m_search_ms)));
+    m_solver->set_ways_in(search_it ? &m_detector : nullptr);
     if (is_watched()) m_start = state;
     const int wanted = m_solver->small_steps(dt, state);
     const int small_steps = affordable_small_steps(wanted);
@@ -320,6 +321,7 @@ StepReport ClothStepper::take_part(const Boundary& part, double dt, const Iterat
                                    Cut cut) {
     const double motion = is_watched() ? relative_motion(*m_garment, part, dt, m_state) : 0.0;
     const bool search_it = motion > m_guard.watch_motion;
+    m_solver->set_ways_in(search_it ? &m_detector : nullptr);
     if (is_watched()) m_start = m_state;
     const int count = small_steps_of_part(cut, dt);
     StepReport report =
@@ -369,6 +371,8 @@ void ClothStepper::search(const Boundary& boundary, double dt, Neighbours neighb
     Stopwatch watch;
     const auto count = static_cast<int>(m_detector.find(boundary, m_start.x, state.x, 0).size());
     if (count > 0 && are_few(count)) take_back(boundary, dt, neighbours, state, report);
+    if (report.max_penetration > kVisible)
+        m_detector.add_samples(boundary, m_start.x, state.x, kVisible);
     report.tunnelled = m_detector.thinnest();
     report.points_tunnelled = static_cast<int>(m_detector.found().size());
     m_search_ms = watch.lap();

@@ -537,12 +537,22 @@ bool StepSolver::descend(const Boundary& boundary, const IterationLimits& limits
     return minimum.finite;
 }
 
+/// Good as long as its arguments are.
+ContactProjection::WayIn StepSolver::way_in(const Boundary& boundary, const Points& before) const {
+    if (!m_ways_in) return nullptr;
+    return [&](const SurfaceSamples& samples, int sample) -> std::optional<HalfSpace> {
+        const auto in = m_ways_in->way_in(boundary, samples, sample, before);
+        if (!in) return std::nullopt;
+        return HalfSpace{in->normal1, in->normal1.dot(in->point1)};
+    };
+}
+
 void StepSolver::project(const Boundary& boundary, const ClothState& state, StepReport& report) {
     place_pins(*m_garment, boundary, m_x);
     const double distance = m_settings.safety_distance;
     m_goals.begin_step(boundary.goals);
-    const ResolveReport resolved =
-        m_goals.finish(m_projection, m_proximity, boundary, distance, m_x, m_contacts);
+    const ResolveReport resolved = m_goals.finish(m_projection, m_proximity, boundary, distance,
+                                                  m_x, m_contacts, way_in(boundary, state.x));
     report.max_penetration = resolved.deepest_after();
     report.max_entry = resolved.max_depth_before;
     m_self_contact.finish(state.x, {boundary, m_proximity, m_goals, distance, m_contacts}, m_x,

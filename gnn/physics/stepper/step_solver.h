@@ -136,6 +136,9 @@ class StepSolver {
     void set_max_iterations(int most) { m_max_iterations = std::max(1, most); }
     /// See Stepper::set_surface_projection().
     void set_surface_projection(bool on) { m_projection.set_surface(on); }
+    /// What knows where face centres and edge midpoints went in, so that they come out there; null:
+    /// they come out where they are nearest to the surface.
+    void set_ways_in(const TunnellingDetector* ways) { m_ways_in = ways; }
     /// See Stepper::set_most_residual(); of quasi-Newton.
     void set_most_residual(double most) { m_most_residual = most; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
@@ -243,6 +246,7 @@ class StepSolver {
     void iterate_after_newton(MinimiseReport& minimum);
     bool descend(const Boundary& boundary, const IterationLimits& limits,
                  const PotentialValue* at_x, const ClothState& state, StepReport& report);
+    ContactProjection::WayIn way_in(const Boundary& boundary, const Points& before) const;
     void project(const Boundary& boundary, const ClothState& state, StepReport& report);
     StepReport finish(const Boundary& boundary, double dt, ClothState& state, StepReport report);
     bool accept(double dt, ClothState& state);
@@ -258,6 +262,7 @@ class StepSolver {
     Proximity m_proximity;
     RidgeFinder m_ridges;
     ContactProjection m_projection;
+    const TunnellingDetector* m_ways_in = nullptr;
     GoalProjection m_goals;
     SelfContactProjection m_self_contact;
     SurfaceContacts m_contacts;

@@ -469,6 +469,88 @@ TEST(Tunnelling, FromOneLimbIntoAnotherAreFolds) {
     EXPECT_TRUE(detector.find(boundary_of({body}), x, x, 0).empty());
 }
 
+/// A finger of 14 mm that goes 3 cm upwards, through the middle of a face of the sheet y = 0.
+struct Finger {
+    Finger() : garment(sheet()) {
+        const Points& x = garment.rest().vertices;
+        const Faces& faces = garment.rest().faces;
+        double least = 1.0;
+        for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+            const Vec3 at = (x.row(faces(f, 0)) + x.row(faces(f, 1)) + x.row(faces(f, 2))) / 3.0;
+            if (!(at.norm() < least)) continue;
+            least = at.norm();
+            face = static_cast<int>(f);
+            centre = at;
+        }
+        obstacle = at_heights(-0.05, -0.02);
+    }
+    /// Of its middle; it is 8 cm long.
+    Obstacle at_heights(double from, double to) const {
+        return moving(scaled(cube(), {0.007, 0.04, 0.007}), pose_of(centre + Vec3(0, from, 0)),
+                      pose_of(centre + Vec3(0, to, 0)));
+    }
+    Garment garment;
+    int face = -1;
+    Vec3 centre;
+    Obstacle obstacle;
+};
+
+TEST(Tunnelling, OfFacesThatAFingerPiercedAreThoseOfTheirSamples) {
+    const Finger finger;
+    const Points& x = finger.garment.rest().vertices;
+    const auto count = static_cast<int>(x.rows());
+    const Boundary boundary = boundary_of({finger.obstacle});
+    TunnellingDetector detector(finger.garment);
+    ASSERT_TRUE(detector.find(boundary, x, x, 0).empty()) << "no vertex meets it";
+    detector.add_samples(boundary, x, x, 1e-3);
+    ASSERT_FALSE(detector.found().empty());
+    bool found_face = false;
+    for (const Tunnelling& through : detector.found()) {
+        ASSERT_GE(through.point, count);
+        found_face = found_face || through.point == count + finger.face;
+        EXPECT_EQ(through.obstacle, 0);
+        EXPECT_FALSE(through.limb);
+        EXPECT_NEAR(through.thickness, 0.02, 1e-9) << "as deep as it went";
+        EXPECT_NEAR(through.in.normal1.y(), 1.0, 1e-9) << "at the tip, not at a side";
+        EXPECT_NEAR(through.in.point1.y(), 0.02, 1e-9);
+        EXPECT_NEAR(through.in.point0.y(), -0.01, 1e-9);
+    }
+    EXPECT_TRUE(found_face);
+    Points held = x;
+    SurfaceContacts contacts;
+    Proximity().query(x, boundary, contacts, StepEnd::end);
+    detector.hold_where_they_went_in(contacts, held);
+    EXPECT_EQ(contacts.ridges.size(), detector.found().size());
+}
+
+TEST(Tunnelling, SamplesThatWereInsideBeforeOrInAFoldHaveNoWayIn) {
+    Finger finger;
+    const Points& x = finger.garment.rest().vertices;
+    TunnellingDetector detector(finger.garment);
+    const auto count = [&](const Obstacle& obstacle) {
+        const Boundary boundary = boundary_of({obstacle});
+        detector.find(boundary, x, x, 0);
+        detector.add_samples(boundary, x, x, 1e-3);
+        return detector.found().size();
+    };
+    EXPECT_GT(count(finger.obstacle), 0u);
+    EXPECT_EQ(count(finger.at_heights(-0.03, -0.0)), 0u) << "inside before";
+    EXPECT_EQ(count(finger.at_heights(-0.02, -0.02)), 0u) << "nothing moves";
+    // its tip is another limb
+    const Faces& faces = *finger.obstacle.faces;
+    auto limbs = std::make_shared<std::vector<std::uint8_t>>();
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+        double lowest = 1.0;
+        for (int k = 0; k < 3; ++k) lowest = std::min(lowest, finger.obstacle.x1(faces(f, k), 1));
+        limbs->push_back(lowest > 0.0 ? 1 : 0);
+    }
+    finger.obstacle.limbs = limbs;
+    EXPECT_EQ(count(finger.obstacle), 0u) << "a fold";
+    std::fill(limbs->begin(), limbs->end(), std::uint8_t(1));
+    EXPECT_GT(count(finger.obstacle), 0u);
+    for (const Tunnelling& through : detector.found()) EXPECT_EQ(through.limb, 1);
+}
+
 TEST(Tunnelling, DependOnTheArgumentsAlone) {
     const Garment garment = sheet();
     const Points& x0 = garment.rest().vertices;

@@ -231,6 +231,57 @@ TEST(ContactProjection, AcrossOverlappingPartsOfABodyAllGoToOneSide) {
     EXPECT_LT(largest_move(x, before), 0.03);
 }
 
+/// Of the sheet over a place in the plane y = 0 (m).
+double height_over(const Garment& garment, const Points& x, const Vec3& place) {
+    const Faces& faces = garment.rest().faces;
+    for (Eigen::Index f = 0; f < faces.rows(); ++f) {
+        Eigen::Matrix3d corners;  // in its columns, with 1 for the height
+        for (int k = 0; k < 3; ++k) corners.col(k) << x(faces(f, k), 0), 1.0, x(faces(f, k), 2);
+        const Vec3 weight = corners.colPivHouseholderQr().solve(Vec3(place.x(), 1.0, place.z()));
+        if (!(weight.minCoeff() >= 0.0)) continue;
+        return weight[0] * x(faces(f, 0), 1) + weight[1] * x(faces(f, 1), 1) +
+               weight[2] * x(faces(f, 2), 1);
+    }
+    return -1.0;
+}
+
+/// A finger of 16 mm that pierces a face from below, up to 12 mm above the sheet y = 0.
+TEST(ContactProjection, PiercedFacesLeaveByTheWayThatIsKnown) {
+    const Garment garment = sheet();
+    const Points& before = garment.rest().vertices;
+    const Faces& faces = garment.rest().faces;
+    const double tip = 0.012;
+    int pierced = 0;
+    for (const int face : {100, 200, 300, 400}) {
+        const Vec3 centre =
+            (before.row(faces(face, 0)) + before.row(faces(face, 1)) + before.row(faces(face, 2))) /
+            3.0;
+        TriMesh finger = cube();
+        finger.vertices.array().rowwise() *= Eigen::RowVector3d(0.008, 0.05, 0.008).array();
+        finger.vertices.rowwise() += (centre + Vec3(0, tip - 0.05, 0)).transpose();
+        const Boundary boundary = boundary_of({mesh_obstacle(finger)});
+        const auto resolved = [&](const ContactProjection::WayIn& way_in) {
+            Points x = before;
+            Proximity proximity;
+            SurfaceContacts contacts;
+            ContactProjection(garment).resolve(proximity, boundary, distance, x, contacts, way_in);
+            return x;
+        };
+        if (height_over(garment, resolved(nullptr), centre) < 0.5 * tip) ++pierced;
+        const Points x = resolved([&](const SurfaceSamples& samples, int sample) {
+            EXPECT_LT(samples.contacts().distance[sample], 0.0) << "asked of deep samples alone";
+            return HalfSpace{Vec3::UnitY(), tip};
+        });
+        EXPECT_LT(oracle_depth(garment, x, boundary), 1e-3) << face;
+        EXPECT_GT(height_over(garment, x, centre), tip - 1e-3) << face;
+        EXPECT_LT(measure_stretch(garment, x).max, 1.25) << face;
+        const Points unknown =
+            resolved([](const SurfaceSamples&, int) { return std::optional<HalfSpace>(); });
+        EXPECT_TRUE(unknown == resolved(nullptr)) << face;
+    }
+    EXPECT_GT(pierced, 2) << "else this tests nothing";
+}
+
 TEST(ContactProjection, SettingsOutOfRangeAreRefused) {
     ContactProjectionSettings settings;
     settings.allowed_depth = -1e-3;

@@ -317,6 +317,42 @@ TEST_F(Guard, AFaceIsFastWhereNoCornerOfItIsNear) {
     EXPECT_EQ(relative_motion(m_garment, m_boundary, dt, m_state), 0.0);
 }
 
+/// A finger of 14 mm that comes as far out of the middle of a face, where nothing but contact moves
+/// the sheet.
+TEST_F(Guard, AFingerCarriesTheFaceThatItPierced) {
+    const Points& rest = m_garment.rest().vertices;
+    const Faces& faces = m_garment.rest().faces;
+    const double tip = 0.014;
+    int pierced = 0;
+    for (int face = 400; face < 700; face += 20) {
+        const auto centre = [&](const Points& x) -> Vec3 {
+            return (x.row(faces(face, 0)) + x.row(faces(face, 1)) + x.row(faces(face, 2))) / 3.0;
+        };
+        Obstacle box;
+        box.shape = ObstacleShape::box;
+        box.half_extents = {0.1, 0.007, 0.007};
+        box.pose0.translation() = centre(rest) + Vec3(-0.01 - 0.1, 0, 0);
+        box.pose1.translation() = centre(rest) + Vec3(tip - 0.1, 0, 0);
+        m_boundary.obstacles = {as_mesh(box)};
+        for (const bool watched : {true, false}) {
+            GuardSettings guard;
+            if (!watched) guard.max_substeps = 1;
+            ClothStepperSettings settings = guarded(guard);
+            settings.step = StepSettings::whole(IterationLimits::none());
+            ClothStepper stepper(m_garment, settings);
+            ClothState state = m_state;
+            const StepReport report = stepper.step(m_boundary, dt, state);
+            if (watched) {
+                EXPECT_LT(report.max_penetration, 1e-3) << face;
+                EXPECT_GT(centre(state.x).x(), tip - 1e-3) << face;
+            } else if (centre(state.x).x() < 0.5 * tip) {
+                ++pierced;
+            }
+        }
+    }
+    EXPECT_GT(pierced, 3) << "else this tests nothing";
+}
+
 class Through : public Guard, public ::testing::WithParamInterface<bool> {
  protected:
     void place(const Obstacle& box) { m_boundary.obstacles = {GetParam() ? as_mesh(box) : box}; }
