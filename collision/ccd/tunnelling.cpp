@@ -78,6 +78,11 @@ bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corn
     return true;
 }
 
+/// Of a mesh, of each face; null: it has none.
+const std::vector<std::uint8_t>* usable_limbs(const Obstacle& mesh) {
+    return has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+}
+
 /// None where there are none, and for a place that is not on a face.
 std::optional<int> limb_of(const std::vector<std::uint8_t>* limbs, int face) {
     if (face < 0 || !limbs) return std::nullopt;
@@ -195,7 +200,7 @@ void TunnellingDetector::find_in_mesh(const Boundary& boundary, int obstacle, co
         (boundary.trees ? *boundary.trees : *m_trees).motion(mesh);
     if (!tree) return;
     const int count = static_cast<int>(vertices.size());
-    const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+    const std::vector<std::uint8_t>* limbs = usable_limbs(mesh);
     const auto find_part = [&](int part, std::vector<Crossing>& out) {
         std::vector<int> stack;
         const int end = std::min(count, (part + 1) * points_per_part);
@@ -226,7 +231,7 @@ std::optional<CarriedPoint> TunnellingDetector::way_in(const Boundary& boundary,
     const std::shared_ptr<const MotionTree> tree =
         (boundary.trees ? *boundary.trees : *m_trees).motion(mesh);
     if (!tree) return std::nullopt;
-    const std::vector<std::uint8_t>* limbs = has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+    const std::vector<std::uint8_t>* limbs = usable_limbs(mesh);
     std::vector<int> stack;
     const Crossing crossing =
         cross(mesh, *tree, samples.corners(sample).position(x0), samples.position(sample),
@@ -248,7 +253,7 @@ void TunnellingDetector::add_samples(const Boundary& boundary, const Points& x0,
         const Obstacle& mesh = boundary.obstacles[static_cast<size_t>(obstacle)];
         const double thickness = (in->point1 - m_samples.position(sample)).norm();
         m_found.push_back({static_cast<int>(x1.rows()) + sample, obstacle,
-                           limb_of(has_limbs(mesh) ? mesh.limbs.get() : nullptr, in->face),
+                           limb_of(usable_limbs(mesh), in->face),
                            std::max(thickness, least_thickness), *in});
     }
 }
