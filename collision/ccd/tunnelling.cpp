@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -258,12 +260,36 @@ void TunnellingDetector::add_samples(const Boundary& boundary, const Points& x0,
     }
 }
 
+void TunnellingDetector::place_samples(const Points& x0, const Points& x1) {
+    m_samples0.resize(m_samples.count(), 3);
+    m_samples1.resize(m_samples.count(), 3);
+    for (int sample = 0; sample < m_samples.count(); ++sample) {
+        const SurfaceSamples::Corners corners = m_samples.corners(sample);
+        m_samples0.row(sample) = corners.position(x0);
+        m_samples1.row(sample) = corners.position(x1);
+    }
+    m_longest_way = std::sqrt((x1 - x0).rowwise().squaredNorm().maxCoeff());
+}
+
+/// How far from the centre of a primitive at t (m) points of such a way never meet it. In its frame
+/// one that is `a` away moves by no more than its way, the centre's, and spin * a.
+static double unreachable(const Obstacle& shape, double longest_way) {
+    constexpr double rounding = 1.0 + 1e-5;  // frames are turned as exactly as floats are
+    const double spin = (shape.pose1.linear() - shape.pose0.linear()).norm();
+    const double way = longest_way + (shape.pose1.translation() - shape.pose0.translation()).norm();
+    if (!(spin < 1.0)) return std::numeric_limits<double>::infinity();
+    return rounding * (reach_of_primitive(shape) + way) / (1.0 - spin);
+}
+
 void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
                                            const Points& x1, const std::vector<int>& vertices) {
     const Obstacle& shape = boundary.obstacles[static_cast<size_t>(obstacle)];
     if (!is_usable_primitive(shape)) return;
     const Pose to_local0 = shape.pose0.inverse(), to_local1 = shape.pose1.inverse();
+    const Vec3 centre = shape.pose0.translation();
+    const double far = unreachable(shape, m_longest_way), squared_far = far * far;
     const auto follow = [&](int point, const Vec3& from, const Vec3& to) {
+        if ((from - centre).squaredNorm() > squared_far) return;
         const Vec3 p0 = to_local0 * from, p1 = to_local1 * to;
         const PrimitivePath path = follow_path(shape, p0, p1);
         if (!path.meets || path.in.distance < -shallow) return;
@@ -279,11 +305,13 @@ void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacl
     for (const int i : vertices)
         if ((ignored_limbs(boundary, i) & shape.solid) == 0) follow(i, x0.row(i), x1.row(i));
     for (int sample = 0; sample < m_samples.count(); ++sample) {
-        const SurfaceSamples::Corners corners = m_samples.corners(sample);
+        if (!m_samples.is_movable(sample)) continue;
         LimbSet ignored = 0;
-        for (const int vertex : corners.vertex) ignored |= ignored_limbs(boundary, vertex);
-        if (m_samples.is_movable(sample) && (ignored & shape.solid) == 0)
-            follow(count + sample, corners.position(x0), corners.position(x1));
+        if (shape.solid != 0)
+            for (const int vertex : m_samples.corners(sample).vertex)
+                ignored |= ignored_limbs(boundary, vertex);
+        if ((ignored & shape.solid) == 0)
+            follow(count + sample, m_samples0.row(sample), m_samples1.row(sample));
     }
 }
 
@@ -401,9 +429,13 @@ const std::vector<Tunnelling>& TunnellingDetector::find(const Boundary& boundary
 void TunnellingDetector::search(const Boundary& boundary, const Points& x0, const Points& x1,
                                 const std::vector<int>& vertices, int threads) {
     m_found.clear();
+    const auto is_mesh = [](const Obstacle& obstacle) {
+        return obstacle.shape == ObstacleShape::mesh;
+    };
+    if (!std::all_of(boundary.obstacles.begin(), boundary.obstacles.end(), is_mesh))
+        place_samples(x0, x1);
     for (int k = 0; k < static_cast<int>(boundary.obstacles.size()); ++k) {
-        const Obstacle& obstacle = boundary.obstacles[static_cast<size_t>(k)];
-        if (obstacle.shape == ObstacleShape::mesh)
+        if (is_mesh(boundary.obstacles[static_cast<size_t>(k)]))
             find_in_mesh(boundary, k, x0, x1, vertices, threads);
         else
             find_in_primitive(boundary, k, x0, x1, vertices);

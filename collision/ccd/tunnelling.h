@@ -104,6 +104,7 @@ class TunnellingDetector {
 
     void search(const Boundary& boundary, const Points& x0, const Points& x1,
                 const std::vector<int>& vertices, int threads);
+    void place_samples(const Points& x0, const Points& x1);
     void find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
                            const Points& x1, const std::vector<int>& vertices);
     void find_in_mesh(const Boundary& boundary, int obstacle, const Points& x0, const Points& x1,
@@ -124,6 +125,8 @@ class TunnellingDetector {
     std::vector<Crossing> m_crossings;
     std::vector<std::vector<Crossing>> m_parts;
     std::vector<int> m_rows;
+    Points m_samples0, m_samples1;           ///< |samples| x 3 (m): at t and at t + dt
+    double m_longest_way = 0.0;              ///< of vertices, and so of samples (m)
     std::vector<char> m_moved;               ///< |V|: by take_back()
     bool m_owns_trees;                       ///< whether they are of this object alone
     std::shared_ptr<ObstacleTrees> m_trees;  ///< used where Boundary::trees is null

@@ -84,7 +84,17 @@ struct Target {
     const Obstacle* obstacle;
     std::shared_ptr<const MeshSurface> surface;  // null: a primitive
     Answers* answers;                            // of a mesh
-    Pose to_local;                               // primitive: from the world to its frame
+    // Of a primitive:
+    Pose to_local = Pose::Identity();  // from the world to its frame
+    Vec3 centre = Vec3::Zero();        // of that frame (m)
+    double reach = 0.0;                // see reach_of_primitive()
+
+    /// Whether it is surely farther from x than `distance` (m).
+    bool is_beyond(const Vec3& x, double distance) const {
+        constexpr double rounding = 1.0 + 1e-5;  // frames are turned as exactly as floats are
+        const double away = reach + distance;
+        return (x - centre).squaredNorm() > rounding * away * away;
+    }
 };
 
 /// The nearest surface point found so far for one query point.
@@ -93,7 +103,7 @@ struct Nearest {
     double distance = no_distance;
     double clearance = no_distance;  // no surface is nearer
     SurfaceHit on_mesh;
-    PrimitiveHit on_primitive;
+    Vec3 x = Vec3::Zero();  // where a primitive is the nearest: the point in its frame (m)
 };
 
 Answers& answers_for(SearchedMesh& mesh, size_t count) {
@@ -164,11 +174,13 @@ Nearest find_nearest(const std::vector<Target>& targets, const Vec3& x, size_t p
             nearest.on_mesh = hit;
             nearest.distance = hit.distance;
         } else {
-            const PrimitiveHit hit = closest_on_primitive(*target.obstacle, target.to_local * x);
-            nearest.clearance = std::min(nearest.clearance, hit.distance);
-            if (hit.distance > radius || hit.distance >= nearest.distance) continue;
-            nearest.on_primitive = hit;
-            nearest.distance = hit.distance;
+            if (target.is_beyond(x, nearest.clearance)) continue;
+            const Vec3 local = target.to_local * x;
+            const double distance = distance_to_primitive(*target.obstacle, local);
+            nearest.clearance = std::min(nearest.clearance, distance);
+            if (distance > radius || distance >= nearest.distance) continue;
+            nearest.x = local;
+            nearest.distance = distance;
         }
         nearest.target = &target;
     }
@@ -212,7 +224,7 @@ void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
         if (!point[carried].allFinite()) return clear_row(contacts, i);
         contacts.barycentric.row(i) = nearest.on_mesh.barycentric;
     } else {
-        const PrimitiveHit& hit = nearest.on_primitive;
+        const PrimitiveHit hit = closest_on_primitive(obstacle, nearest.x);
         const Pose* ends[2] = {&obstacle.pose0, &obstacle.pose1};
         for (const int end : {0, 1}) {
             point[end] = *ends[end] * hit.point;
@@ -285,10 +297,13 @@ struct Proximity::Impl {
 
     void add_target(int index, const Obstacle& obstacle, ObstacleTrees& trees, StepEnd end,
                     size_t count) {
-        Target target{index, &obstacle, nullptr, nullptr, Pose::Identity()};
+        Target target{index, &obstacle, nullptr, nullptr};
         if (obstacle.shape != ObstacleShape::mesh) {
             if (!is_usable_primitive(obstacle)) return;
-            target.to_local = (end == StepEnd::start ? obstacle.pose0 : obstacle.pose1).inverse();
+            const Pose& pose = end == StepEnd::start ? obstacle.pose0 : obstacle.pose1;
+            target.to_local = pose.inverse();
+            target.centre = pose.translation();
+            target.reach = reach_of_primitive(obstacle);
         } else {
             target.surface = trees.surface(obstacle, end);
             if (!target.surface) return;

@@ -1,6 +1,7 @@
 #include "collision/proximity/surface_samples.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -81,6 +82,25 @@ double SurfaceSamples::max_depth() const {
     double depth = 0.0;
     for (const int sample : m_deep) depth = std::max(depth, -m_contacts.distance[sample]);
     return depth;
+}
+
+/// A sample is no farther from each of its vertices than their edges are long.
+void SurfaceSamples::find_clear(const Points& x, const SurfaceContacts& contacts) {
+    const Eigen::Index count = x.rows();
+    m_clear.assign(static_cast<size_t>(count), 0);
+    if (count == 0 || !(contacts.clearance.maxCoeff() > near_enough)) return;
+    double squared = 0.0;
+    for (const auto& [a, b] : m_edges)
+        squared = std::max(squared, (x.row(a) - x.row(b)).squaredNorm());
+    const double far_enough = std::max(near_enough, std::sqrt(squared));
+    for (Eigen::Index i = 0; i < count; ++i)
+        m_clear[static_cast<size_t>(i)] = contacts.clearance[i] > far_enough;
+}
+
+bool SurfaceSamples::is_clear(int sample) const {
+    const auto at = corners(sample).vertex;
+    return m_clear[static_cast<size_t>(at[0])] && m_clear[static_cast<size_t>(at[1])] &&
+           m_clear[static_cast<size_t>(at[2])];
 }
 
 bool SurfaceSamples::has_changed(int sample, const std::vector<char>* changed) const {
@@ -171,9 +191,15 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
                                const SurfaceContacts& contacts, double depth,
                                const std::vector<char>* changed) {
     m_radius = proximity.settings().radius;
+    find_clear(x, contacts);
     const auto is_unsure = [&](int sample) {
         const auto k = static_cast<size_t>(sample);
         if (!has_changed(sample, changed)) return false;
+        if (is_clear(sample)) {
+            m_parted[k] = 0;
+            m_distance[sample] = 0.0;
+            return false;
+        }
         m_x.row(sample) = corners(sample).position(x);
         m_parted[k] = skins_part(sample, contacts);
         m_distance[sample] =

@@ -14,7 +14,8 @@ namespace cloth {
 ///
 /// Only samples that can be deep are searched for: the signed distance changes by no more than a
 /// point moves, so the distances of its vertices bound that of a face's centre, and the centre's,
-/// which is nearer to the midpoints than any vertex, those of its edges' midpoints. Where skins
+/// which is nearer to the midpoints than any vertex, those of its edges' midpoints. Vertices that
+/// are farther outside than all edges are long need not be looked at so closely. Where skins
 /// face each other there are no such bounds: parts of a body may overlap there, and where they do
 /// the sign of the distance jumps.
 class SurfaceSamples {
@@ -73,6 +74,8 @@ class SurfaceSamples {
                        const IsUnsure& is_unsure);
     void limit_search(int sample, const Boundary& boundary, double radius);
     void query_rows(Proximity& proximity, const Boundary& boundary);
+    void find_clear(const Points& x, const SurfaceContacts& contacts);
+    bool is_clear(int sample) const;
     bool has_changed(int sample, const std::vector<char>* changed) const;
     bool skins_part(int sample, const SurfaceContacts& contacts) const;
     double vouched_by_vertices(int sample, const Points& x, const VectorX& clearance) const;
@@ -87,6 +90,7 @@ class SurfaceSamples {
     std::vector<int> m_rows, m_deep;
     std::vector<LimbSet> m_ignored;  ///< |samples|: by any of its vertices
     std::vector<char> m_parted;      ///< |samples|: its vertices stand on skins that part
+    std::vector<char> m_clear;       ///< |V|: no sample of it is deep, or near skins that part
     std::vector<char> m_unsure;      ///< scratch memory
     std::vector<char> m_movable;     ///< |samples|: not all of its vertices are pinned
     double m_radius = 0.0;

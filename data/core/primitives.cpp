@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cloth {
 
@@ -16,10 +17,15 @@ static PrimitiveHit offset_of_point(const Vec3& core, const Vec3& fallback, doub
     return {core + radius * normal, normal, length - radius};
 }
 
-static PrimitiveHit closest_on_capsule(const Obstacle& capsule, const Vec3& q) {
+/// Of the capsule's segment to `q`.
+static Vec3 closest_on_segment(const Obstacle& capsule, const Vec3& q) {
     const double half = capsule.half_extents.y();
-    const Vec3 core(0.0, std::clamp(q.y(), -half, half), 0.0);
-    return offset_of_point(core, Vec3::UnitX(), capsule.radius, q);
+    return {0.0, std::clamp(q.y(), -half, half), 0.0};
+}
+
+/// The depth below the nearest side of a point inside a box, or on it (m).
+static double depth_in_box(const Vec3& half, const Vec3& q, Eigen::Index& axis) {
+    return (half - q.cwiseAbs()).minCoeff(&axis);
 }
 
 static PrimitiveHit closest_on_box(const Obstacle& box, const Vec3& q) {
@@ -27,8 +33,8 @@ static PrimitiveHit closest_on_box(const Obstacle& box, const Vec3& q) {
     const Vec3 clamped = q.cwiseMax(-half).cwiseMin(half);
     if ((q - clamped).norm() > coincident)
         return offset_of_point(clamped, Vec3::UnitY(), box.radius, q);
-    Eigen::Index axis = 0;  // inside the box, or on it: the nearest side
-    const double depth = (half - q.cwiseAbs()).minCoeff(&axis);
+    Eigen::Index axis = 0;
+    const double depth = depth_in_box(half, q, axis);
     Vec3 normal = Vec3::Zero();
     normal[axis] = q[axis] < 0 ? -1.0 : 1.0;
     Vec3 point = q;
@@ -41,11 +47,45 @@ PrimitiveHit closest_on_primitive(const Obstacle& obstacle, const Vec3& q) {
         case ObstacleShape::sphere:
             return offset_of_point(Vec3::Zero(), Vec3::UnitY(), obstacle.radius, q);
         case ObstacleShape::capsule:
-            return closest_on_capsule(obstacle, q);
+            return offset_of_point(closest_on_segment(obstacle, q), Vec3::UnitX(), obstacle.radius,
+                                   q);
         case ObstacleShape::box:
             return closest_on_box(obstacle, q);
         default:
             return {Vec3(q.x(), 0.0, q.z()), Vec3::UnitY(), q.y()};
+    }
+}
+
+static double distance_to_box(const Obstacle& box, const Vec3& q) {
+    const Vec3& half = box.half_extents;
+    const double away = (q - q.cwiseMax(-half).cwiseMin(half)).norm();
+    Eigen::Index axis = 0;
+    return (away > coincident ? away : -depth_in_box(half, q, axis)) - box.radius;
+}
+
+double distance_to_primitive(const Obstacle& obstacle, const Vec3& q) {
+    switch (obstacle.shape) {
+        case ObstacleShape::sphere:
+            return q.norm() - obstacle.radius;
+        case ObstacleShape::capsule:
+            return (q - closest_on_segment(obstacle, q)).norm() - obstacle.radius;
+        case ObstacleShape::box:
+            return distance_to_box(obstacle, q);
+        default:
+            return q.y();
+    }
+}
+
+double reach_of_primitive(const Obstacle& obstacle) {
+    switch (obstacle.shape) {
+        case ObstacleShape::sphere:
+            return obstacle.radius;
+        case ObstacleShape::capsule:
+            return obstacle.half_extents.y() + obstacle.radius;
+        case ObstacleShape::box:
+            return obstacle.half_extents.norm() + obstacle.radius;
+        default:
+            return std::numeric_limits<double>::infinity();
     }
 }
 

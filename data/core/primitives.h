@@ -17,6 +17,12 @@ struct PrimitiveHit {
 /// chosen.
 PrimitiveHit closest_on_primitive(const Obstacle& obstacle, const Vec3& q);
 
+/// closest_on_primitive().distance alone, the same to the bit.
+double distance_to_primitive(const Obstacle& obstacle, const Vec3& q);
+
+/// Radius of the sphere around the frame's origin that holds the primitive (m); infinite: a plane.
+double reach_of_primitive(const Obstacle& obstacle);
+
 /// False if the sizes that the shape uses are negative or not finite, a pose is not finite, or the
 /// obstacle is a mesh.
 bool is_usable_primitive(const Obstacle& obstacle);

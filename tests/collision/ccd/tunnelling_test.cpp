@@ -6,10 +6,11 @@
 #include <cmath>
 #include <set>
 
+#include "collision/ccd/primitive_sweep.h"
 #include "collision/proximity/brute_force.h"
 #include "collision/response/neighbour_pull.h"
 #include "data/authoring/sheet.h"
-#include "tests/test_meshes.h"
+#include "tests/collision/random_primitives.h"
 
 namespace cloth::tunnelling_test {
 namespace {
@@ -159,6 +160,51 @@ TEST(Tunnelling, OfPrimitivesAreThoseOfTheirMeshes) {
                                   std::back_inserter(different));
     for (const int i : different)  // only at the rim
         EXPECT_NEAR((x0.row(i) - Eigen::RowVector3d(0.05, 0.0, 0.0)).norm(), 0.2, 0.03);
+}
+
+/// Whether a straight path goes through a primitive, with nothing passed over.
+bool goes_through(const Obstacle& shape, const Vec3& from, const Vec3& to) {
+    constexpr double shallow = 5e-3, thin = 5e-3;  // m, as documented
+    const Vec3 p0 = shape.pose0.inverse() * from, p1 = shape.pose1.inverse() * to;
+    const PrimitivePath path = follow_path(shape, p0, p1);
+    if (!path.meets || path.in.distance < -shallow) return false;
+    if (path.out.distance < -shallow) return (path.in.point - p1).norm() >= thin;
+    return path.in.normal.dot(path.out.normal) < 0.0 &&
+           (path.in.point - path.out.point).norm() >= thin;
+}
+
+TEST(Tunnelling, OfManyPrimitivesAreThoseOfEveryPathLookedAt) {
+    std::mt19937 random(13);
+    const Garment garment = sheet({0, 7});
+    const SurfaceSamples samples(garment);
+    const Points& x0 = garment.rest().vertices;
+    TunnellingDetector detector(garment);
+    size_t count = 0;
+    for (int trial = 0; trial < 40; ++trial) {
+        const Boundary boundary = random_primitives(random, trial / 2);
+        Points x1 = shifted(x0, random_point(random, 0.1));
+        for (Eigen::Index i = 0; i < x1.rows(); ++i)
+            x1.row(i) += random_point(random, i % 50 == 0 ? 0.3 : 0.02);
+        std::set<std::pair<int, int>> found, expected;
+        for (const Tunnelling& solid : detector.find(boundary, x0, x1, 0))
+            found.insert({solid.obstacle, solid.point});
+        for (int k = 0; k < static_cast<int>(boundary.obstacles.size()); ++k) {
+            const Obstacle& shape = boundary.obstacles[static_cast<size_t>(k)];
+            for (int i = 0; i < garment.vertex_count(); ++i)
+                if (!garment.is_pinned()[static_cast<size_t>(i)] &&
+                    goes_through(shape, x0.row(i), x1.row(i)))
+                    expected.insert({k, i});
+            for (int sample = 0; sample < samples.count(); ++sample) {
+                const SurfaceSamples::Corners at = samples.corners(sample);
+                if (samples.is_movable(sample) &&
+                    goes_through(shape, at.position(x0), at.position(x1)))
+                    expected.insert({k, garment.vertex_count() + sample});
+            }
+        }
+        EXPECT_EQ(found, expected);
+        count += found.size();
+    }
+    EXPECT_GT(count, 3000u);
 }
 
 TEST(Tunnelling, OfSmallPrimitivesAreSeenBetweenVertices) {

@@ -5,7 +5,9 @@
 #include "collision/proximity/brute_force.h"
 #include "data/core/errors.h"
 #include "data/core/paths.h"
+#include "data/core/primitives.h"
 #include "data/files/mesh_io.h"
+#include "tests/collision/random_primitives.h"
 #include "tests/sanitized.h"
 #include "tests/test_meshes.h"
 
@@ -186,6 +188,36 @@ TEST(Proximity, SmallestSignedDistanceWinsAmongObstacles) {
     EXPECT_EQ(contacts.obstacle, (std::vector<int>{0, 1, 2, 0}));
     EXPECT_NEAR(contacts.distance[2], 0.01, 1e-12);
     EXPECT_LT(contacts.distance[3], -0.04);
+}
+
+TEST(Proximity, AmongManyPrimitivesTheNearestIsThatOfEachAlone) {
+    std::mt19937 random(12);
+    Proximity proximity({0.1, 0});
+    SurfaceContacts contacts;
+    int inside = 0;
+    for (int trial = 0; trial < 30; ++trial) {
+        const Boundary boundary = random_primitives(random, trial);
+        const Points x = random_points(random, 300, 0.8);
+        for (const StepEnd end : {StepEnd::start, StepEnd::end}) {
+            proximity.query(x, boundary, contacts, end);
+            for (Eigen::Index i = 0; i < x.rows(); ++i) {
+                double least = std::numeric_limits<double>::infinity();
+                int nearest = -1;
+                for (const Obstacle& shape : boundary.obstacles) {
+                    const Pose& pose = end == StepEnd::start ? shape.pose0 : shape.pose1;
+                    const double distance =
+                        closest_on_primitive(shape, pose.inverse() * x.row(i).transpose()).distance;
+                    if (distance >= least) continue;
+                    least = distance;
+                    nearest = static_cast<int>(&shape - boundary.obstacles.data());
+                }
+                EXPECT_EQ(contacts.clearance[i], least);
+                EXPECT_EQ(contacts.obstacle[size_t(i)], least > 0.1 ? -1 : nearest);
+                inside += least < 0.0;
+            }
+        }
+    }
+    EXPECT_GT(inside, 2000);
 }
 
 TEST(Proximity, BeyondTheRadiusThereIsNoContact) {

@@ -51,6 +51,17 @@ TEST(Primitives, NoSurfacePointIsCloser) {
     }
 }
 
+TEST(Primitives, DistanceAloneIsTheSameToTheBit) {
+    std::mt19937 random(4);
+    for (const Obstacle& shape : shapes())
+        for (int trial = 0; trial < 2000; ++trial) {
+            const Vec3 q = random_point(random, trial % 2 == 0 ? 1.5 : 0.3);
+            const double distance = distance_to_primitive(shape, q);
+            EXPECT_EQ(distance, closest_on_primitive(shape, q).distance);
+            EXPECT_GE(distance, q.norm() - reach_of_primitive(shape) - 1e-12);
+        }
+}
+
 TEST(Primitives, KnownDistances) {
     const auto all = shapes();
     const auto distance = [&](size_t shape, const Vec3& q) {
