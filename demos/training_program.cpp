@@ -1,11 +1,13 @@
 #include "demos/training_program.h"
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
@@ -19,6 +21,12 @@ static void on_signal(int signal) {
     std::signal(signal, SIG_DFL);
 }
 
+/// Linux may share the processor among sessions, and look at priorities within each alone
+/// (sched(7), autogroup). A session of the training's own gives way as a whole.
+static void lower_own_session(int nice) {
+    if (getsid(0) == getpid()) std::ofstream("/proc/self/autogroup") << nice;
+}
+
 void begin_training(const TrainingProgram& program) {
     if (program.writes && !program.resume &&
         std::filesystem::exists(program.out + "/checkpoint.pt"))
@@ -28,6 +36,7 @@ void begin_training(const TrainingProgram& program) {
     if (program.nice > 0 && setpriority(PRIO_PROCESS, 0, program.nice) != 0)
         std::cerr << program.name << ": the priority stays as it is: " << std::strerror(errno)
                   << "\n";
+    if (program.nice > 0) lower_own_session(program.nice);
 }
 
 const std::atomic<bool>& stop_on_signals() {
