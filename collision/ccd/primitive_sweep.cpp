@@ -1,5 +1,7 @@
 #include "collision/ccd/primitive_sweep.h"
 
+#include <limits>
+
 namespace cloth {
 
 constexpr double touching = 1e-6;  // m
@@ -25,6 +27,15 @@ PrimitivePath follow_path(const Obstacle& primitive, const Vec3& p0, const Vec3&
     PrimitivePath path;
     path.meets = advance(primitive, p0, p1, path.in) && advance(primitive, p1, p0, path.out);
     return path;
+}
+
+double unreachable_distance(const Obstacle& primitive, double longest_way) {
+    constexpr double rounding = 1.0 + 1e-5;  // frames are turned as exactly as floats are
+    const Pose &from = primitive.pose0, &to = primitive.pose1;
+    const double turn = (to.linear() - from.linear()).norm();
+    if (!(turn < 1.0)) return std::numeric_limits<double>::infinity();
+    const double way = longest_way + (to.translation() - from.translation()).norm();
+    return rounding * (reach_of_primitive(primitive) + way) / (1.0 - turn);
 }
 
 }  // namespace cloth

@@ -15,4 +15,10 @@ struct PrimitivePath {
 /// micrometre. An end that is inside is its own way in, or out.
 PrimitivePath follow_path(const Obstacle& primitive, const Vec3& p0, const Vec3& p1);
 
+/// Points that are farther than this from the primitive's frame at t (m) never meet it in a step in
+/// which they move by no more than `longest_way` (m); infinite where it turns by a lot. In its
+/// frame a point that is `a` away moves by no more than that, the frame's own way, and by as much
+/// of a as the frame turns.
+double unreachable_distance(const Obstacle& primitive, double longest_way);
+
 }  // namespace cloth

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -271,23 +270,13 @@ void TunnellingDetector::place_samples(const Points& x0, const Points& x1) {
     m_longest_way = std::sqrt((x1 - x0).rowwise().squaredNorm().maxCoeff());
 }
 
-/// How far from the centre of a primitive at t (m) points of such a way never meet it. In its frame
-/// one that is `a` away moves by no more than its way, the centre's, and spin * a.
-static double unreachable(const Obstacle& shape, double longest_way) {
-    constexpr double rounding = 1.0 + 1e-5;  // frames are turned as exactly as floats are
-    const double spin = (shape.pose1.linear() - shape.pose0.linear()).norm();
-    const double way = longest_way + (shape.pose1.translation() - shape.pose0.translation()).norm();
-    if (!(spin < 1.0)) return std::numeric_limits<double>::infinity();
-    return rounding * (reach_of_primitive(shape) + way) / (1.0 - spin);
-}
-
 void TunnellingDetector::find_in_primitive(const Boundary& boundary, int obstacle, const Points& x0,
                                            const Points& x1, const std::vector<int>& vertices) {
     const Obstacle& shape = boundary.obstacles[static_cast<size_t>(obstacle)];
     if (!is_usable_primitive(shape)) return;
     const Pose to_local0 = shape.pose0.inverse(), to_local1 = shape.pose1.inverse();
     const Vec3 centre = shape.pose0.translation();
-    const double far = unreachable(shape, m_longest_way), squared_far = far * far;
+    const double far = unreachable_distance(shape, m_longest_way), squared_far = far * far;
     const auto follow = [&](int point, const Vec3& from, const Vec3& to) {
         if ((from - centre).squaredNorm() > squared_far) return;
         const Vec3 p0 = to_local0 * from, p1 = to_local1 * to;
