@@ -287,6 +287,9 @@ void rod(Dice& dice, World& world, MeteredSolver& solver) {
 }  // namespace
 
 TEST(CouplingEnergy, Landings) {
+    // Of the 3,000 worlds from 80000 on two break the bound of speed: 81201 by 1.15 times, in the
+    // first step, 81604 by 1.7 times, where a sheet under a cylinder is thrown a metre high at 30
+    // Hz. In small steps none does.
     check(1000, 450, 0.8, {1.05}, landing);
 }
 
