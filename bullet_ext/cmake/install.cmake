@@ -99,7 +99,7 @@ foreach(folder ${FASTCLOTH_HEADERS})
           PATTERN json_integers.h EXCLUDE)  # for .cpp files: shows a type of nlohmann's
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/data/assets/ DESTINATION ${FASTCLOTH_ASSETS_DIR}
-        PATTERN figures EXCLUDE)
+        PATTERN figures EXCLUDE PATTERN training EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/bullet_ext/LICENCES.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/fastcloth)
 
