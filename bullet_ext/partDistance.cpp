@@ -1,7 +1,6 @@
 #include "bullet_ext/partDistance.h"
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "data/core/errors.h"
@@ -46,26 +45,13 @@ std::unique_ptr<SurfaceDistance> distanceTo(const Points& x, const Faces& all) {
     }
 }
 
-double extentOf(const Obstacle& primitive) {
-    switch (primitive.shape) {
-        case ObstacleShape::sphere:
-            return primitive.radius;
-        case ObstacleShape::capsule:
-            return primitive.half_extents.y() + primitive.radius;
-        case ObstacleShape::box:
-            return primitive.half_extents.norm() + primitive.radius;
-        default:
-            return std::numeric_limits<double>::infinity();
-    }
-}
-
 }  // namespace
 
 PartDistance::PartDistance(const ShapePart& part) : m_inverse(part.frame.inverse()) {
     m_primitive.shape = part.shape;
     m_primitive.half_extents = part.half_extents;
     m_primitive.radius = part.radius;
-    m_extent = extentOf(m_primitive);
+    m_extent = reach_of_primitive(m_primitive);
     if (part.shape != ObstacleShape::mesh) return;
     m_low = part.vertices.colwise().minCoeff();
     m_high = part.vertices.colwise().maxCoeff();
@@ -77,7 +63,7 @@ std::optional<double> PartDistance::at(const Vec3& point, double radius) const {
         constexpr double kRounding = 1e-9;  // m
         const Vec3 local = m_inverse * point;
         if (local.norm() > m_extent + radius + kRounding) return std::nullopt;
-        const double distance = closest_on_primitive(m_primitive, local).distance;
+        const double distance = distance_to_primitive(m_primitive, local);
         return distance <= radius ? std::optional(distance) : std::nullopt;
     }
     if (!m_mesh || (point.array() < m_low.array() - radius).any() ||

@@ -9,18 +9,19 @@ constexpr int max_advances = 200;  // a path that follows the surface closely do
 
 static bool advance(const Obstacle& primitive, const Vec3& from, const Vec3& to,
                     PrimitiveHit& hit) {
-    hit = closest_on_primitive(primitive, from);
-    const double start = hit.distance, length = (to - from).norm();
+    const double start = distance_to_primitive(primitive, from), length = (to - from).norm();
     if (start > length) return false;
-    double way = 0.0;
-    for (int k = 0; k < max_advances && hit.distance > touching; ++k) {
-        way += hit.distance;
+    Vec3 at = from;
+    double distance = start, way = 0.0;
+    for (int k = 0; k < max_advances && distance > touching; ++k) {
+        way += distance;
         if (way > length) return false;
-        hit = closest_on_primitive(primitive, from + (way / length) * (to - from));
+        at = from + (way / length) * (to - from);
+        distance = distance_to_primitive(primitive, at);
     }
-    const bool met = hit.distance <= touching;
+    hit = closest_on_primitive(primitive, at);
     hit.distance = start;
-    return met;
+    return distance <= touching;
 }
 
 PrimitivePath follow_path(const Obstacle& primitive, const Vec3& p0, const Vec3& p1) {

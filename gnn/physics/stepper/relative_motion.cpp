@@ -86,7 +86,7 @@ double motion_over(const Obstacle& shape, const Garment& garment, const Points& 
     for (Eigen::Index i = 0; i < x0.rows(); ++i) {
         const double own = squared_way(i);
         if (own > farthest &&
-            closest_on_primitive(shape, to_local0 * x0.row(i).transpose()).distance < near)
+            distance_to_primitive(shape, to_local0 * x0.row(i).transpose()) < near)
             farthest = own;
     }
     return std::sqrt(farthest);
