@@ -24,8 +24,34 @@
 using cloth::ArgumentError;
 using cloth::Garment;
 using cloth::isFinite;
+using cloth::worldIdOf;
 
 namespace {
+
+/// Gravity that is no number is none in a world step; then it is the user's again.
+class FiniteGravity {
+ public:
+    explicit FiniteGravity(const btAlignedObjectArray<btSoftBody*>& bodies) {
+        for (int i = 0; i < bodies.size(); ++i)
+            if (!isFinite(bodies[i]->m_worldInfo->m_gravity)) m_bodies.push_back(bodies[i]);
+        for (const btSoftBody* body : m_bodies) {
+            m_before.push_back(body->m_worldInfo->m_gravity);
+            body->m_worldInfo->m_gravity.setZero();
+        }
+    }
+    ~FiniteGravity() {
+        // Bodies share it: the first of them found it as it was.
+        for (size_t i = m_bodies.size(); i-- > 0;)
+            m_bodies[i]->m_worldInfo->m_gravity = m_before[i];
+    }
+    FiniteGravity(const FiniteGravity&) = delete;
+    FiniteGravity& operator=(const FiniteGravity&) = delete;
+    const std::vector<const btSoftBody*>& bodies() const { return m_bodies; }
+
+ private:
+    std::vector<const btSoftBody*> m_bodies;
+    std::vector<btVector3> m_before;
+};
 
 /// setTotalMass(0) makes infinite ones.
 bool hasFiniteMasses(const btSoftBody& body) {
@@ -128,6 +154,9 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
                            ": appendDeformableAnchor() to a rigid body does nothing outside of "
                            "Bullet's deformable "
                            "world. Remedy: appendAnchor(), or a link of a btMultiBody");
+    if (!(body.m_cfg.kDF >= 0))
+        troubles.push_back(name +
+                           ": m_cfg.kDF is negative or no number, and counts as 0. Remedy: 0 to 1");
     const btScalar gravity = body.m_worldInfo->m_gravity.length();
     if (gravity > kMostGravity)
         troubles.push_back(name + ": gravity is " + std::to_string(std::lround(gravity)) +
@@ -140,12 +169,6 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
 bool wouldCollide(const btSoftBody& a, const btSoftBody& b) {
     return cloth::askForContact(a, b) &&
            TestAabbAgainstAabb2(a.m_bounds[0], a.m_bounds[1], b.m_bounds[0], b.m_bounds[1]);
-}
-
-/// A number that a body gets when it is added to a world; 0 if it is in none.
-int worldIdOf(const btSoftBody& body) {
-    const btBroadphaseProxy* proxy = body.getBroadphaseHandle();
-    return proxy ? proxy->getUid() : 0;
 }
 
 }  // namespace
@@ -170,9 +193,17 @@ btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
 
 btGnnSoftBodySolver::~btGnnSoftBodySolver() = default;
 
+/// What is known of the body. Nothing is known of one that has left the world since, or of another
+/// one at its address.
+btGnnSoftBodySolver::Entry& btGnnSoftBodySolver::entryOf(const btSoftBody* body) {
+    Entry& entry = m_entries[body];
+    if (body && entry.worldId != 0 && entry.worldId != worldIdOf(*body)) entry = Entry();
+    return entry;
+}
+
 void btGnnSoftBodySolver::attach(btSoftBody* body) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.detached = false;
     entry.asked = true;
     entry.worldId = 0;
@@ -183,7 +214,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
                                  cloth::StepperFactory factory) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
     cloth::checkGarmentFits(*body, garment);
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.given = std::make_shared<const Garment>(garment);
     if (garment.has_goals()) entry.limits = garment.goal_limits();
     entry.factory = std::move(factory);
@@ -196,7 +227,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
 void btGnnSoftBodySolver::attach(btSoftBody* body, const cloth::Fabric& fabric,
                                  cloth::StepperFactory factory) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.given = nullptr;
     entry.fabric = fabric;
     entry.factory = std::move(factory);
@@ -207,7 +238,7 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const cloth::Fabric& fabric,
 }
 
 void btGnnSoftBodySolver::detach(btSoftBody* body) {
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     if (body) leaveToBullet(*body, entry);
     entry.detached = true;
     entry.worldId = 0;
@@ -360,11 +391,8 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
     btDefaultSoftBodySolver::optimize(softBodies, forceUpdate);
     for (int i = 0; i < softBodies.size(); ++i) {
         btSoftBody& body = *softBodies[i];
-        Entry& entry = m_entries[&body];
-        const int id = worldIdOf(body);
-        // Added again, or another body at the address of one that is gone.
-        if (entry.worldId != 0 && entry.worldId != id) entry = Entry();
-        entry.worldId = id;
+        Entry& entry = entryOf(&body);
+        entry.worldId = worldIdOf(body);
         entry.seen = true;
         refresh(body, entry);
         mendBounds(body);
@@ -380,7 +408,7 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
 void btGnnSoftBodySolver::setGoalLimits(btSoftBody* body, const cloth::GoalLimits& limits) {
     if (!body) throw ArgumentError("setGoalLimits()", "the soft body is null", "create it first");
     cloth::check(limits, body->m_nodes.size(), cloth::softBodyName(*body));
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.limits.reset();
     if (!limits.empty()) entry.limits = limits;
     if (entry.step) tryBuild(*body, entry);
@@ -389,7 +417,7 @@ void btGnnSoftBodySolver::setGoalLimits(btSoftBody* body, const cloth::GoalLimit
 void btGnnSoftBodySolver::setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration) {
     if (!body) throw ArgumentError("setGoals()", "the soft body is null", "create it first");
     checkGoals(*body, goals, duration);
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     goalsOf(*body, entry);
     constexpr double kJump = 0.5;  // m: nobody moves as far between the end of a step and the next
     const double jump = std::sqrt((goals.x0 - entry.goals->now()).rowwise().squaredNorm().mean());
@@ -415,7 +443,7 @@ void btGnnSoftBodySolver::setInertia(btSoftBody* body, double linear, double ang
     if (!body) throw ArgumentError("setInertia()", "the soft body is null", "create it first");
     cloth::check_range(cloth::softBodyName(*body) + ": linear inertia", linear, 0.0, 1.0);
     cloth::check_range(cloth::softBodyName(*body) + ": angular inertia", angular, 0.0, 1.0);
-    rootOf(m_entries[body]).setInertia(linear, angular);
+    rootOf(entryOf(body)).setInertia(linear, angular);
 }
 
 void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& from,
@@ -425,7 +453,7 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
         throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
                             "a pose or the duration is not finite",
                             "check the animation before handing it over");
-    rootOf(m_entries[body]).set(cloth::toPose(from), cloth::toPose(to), duration);
+    rootOf(entryOf(body)).set(cloth::toPose(from), cloth::toPose(to), duration);
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
 
@@ -434,7 +462,7 @@ void btGnnSoftBodySolver::setDetail(btSoftBody* body, const btGnnDetail& detail)
     const std::string name = cloth::softBodyName(*body) + ": btGnnDetail.";
     cloth::check_range(name + "iterations", detail.iterations, 0, 1000);
     cloth::check_range(name + "worldSteps", detail.worldSteps, 1, 8);
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.detail = detail;
     if (entry.step) applyDetail(*body, entry);
 }
@@ -459,7 +487,7 @@ void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follow
                                 " vertices, the body has " + std::to_string(body->m_nodes.size()) +
                                 " nodes",
                             "make it for the mesh of the body, garmentOf(body)->rest()");
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     entry.follower = std::move(follower);
     if (entry.follower) entry.follower->show(shownPositions(body), {}, {});
 }
@@ -510,7 +538,7 @@ void btGnnSoftBodySolver::showWithoutObstacles(const btSoftBody& body, Entry& en
 
 void btGnnSoftBodySolver::fadeToSkin(btSoftBody* body, double weight, double seconds) {
     if (!body) throw ArgumentError("fadeToSkin()", "the soft body is null", "create it first");
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     const auto blend = entry.blend ? entry.blend : std::make_shared<cloth::SkinBlend>();
     blend->fade_to(weight, seconds);
     if (!entry.blend) blend->follow(cloth::nodePositions(*body), {}, {});
@@ -534,7 +562,7 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (!isFinite(motion))
         throw ArgumentError(cloth::softBodyName(*body) + ": teleport()", "the motion is not finite",
                             "give the motion from the old place to the new one");
-    Entry& entry = m_entries[body];
+    Entry& entry = entryOf(body);
     // What was cut is told by where the nodes were shown.
     if (entry.step && cloth::topologySignature(*body) != entry.topology) refresh(*body, entry);
     const bool reset = kind == btGnnTeleport::reset && entry.limits;
@@ -570,6 +598,12 @@ void btGnnSoftBodySolver::predictMotion(btScalar solverdt) {
 
 void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
     m_h = static_cast<double>(solverdt);
+    const FiniteGravity gravity(m_softBodySet);
+    for (const btSoftBody* body : gravity.bodies())
+        if (isStepped(body))
+            say(cloth::softBodyName(*body) +
+                ": gravity is not finite, and counts as 0. Remedy: check what the program gives to "
+                "btSoftBodyWorldInfo::m_gravity");
     m_obstacles.beginStep(m_h);
     m_status.clothBodies = m_status.bulletBodies = 0;
     m_status.sleepingBodies = m_status.frozenBodies = m_status.carriedBodies = 0;

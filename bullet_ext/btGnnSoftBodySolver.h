@@ -125,8 +125,8 @@ struct btGnnSolverStatus {
 /// - Pins are nodes of zero inverse mass (moved by their velocity or by setting m_x) and anchored
 ///   nodes (moved by their rigid body); anchors of influence below 1 pull, see softAnchors.h.
 /// - Obstacles are the world's collision objects; see BulletObstacles. Dynamic rigid bodies get
-///   what contacts and anchors took from them, see TwoWayCoupling. Cloth does not touch other soft
-///   bodies.
+///   what contacts and anchors took from them, see TwoWayCoupling. Cloth touches cloth where both
+///   have VF_SS, see btGnnSolverSettings::layerThickness, and passes through other soft bodies.
 /// - Gravity is that of the soft body's btSoftBodyWorldInfo (as for Bullet's own soft bodies, and
 ///   -10 until set), not the world's. Wind, node forces, kDP damping, kDF friction and timescale
 ///   act as in Bullet. The cloth is as stiff as its m_materials say, by the rule of
@@ -178,7 +178,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
                              std::shared_ptr<const cloth::Faces> faces, cloth::Points x0,
                              cloth::Points x1, double duration = 0.0,
                              std::shared_ptr<const std::vector<std::uint8_t>> limbs = nullptr);
-    /// Call before the object is deleted.
+    /// Call before the object is deleted. While an object that was in the world is not, its surface
+    /// is no obstacle.
     void removeAnimatedObstacle(const btCollisionObject* object);
 
     /// Limits the cloth of a body by skinned goals, see cloth::GoalLimits; empty limits: no more.
@@ -310,6 +311,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         bool waits = false;               ///< to be finished when contacts are resolved
     };
 
+    Entry& entryOf(const btSoftBody* body);
     void build(btSoftBody& body, Entry& entry);
     void leaveToBullet(btSoftBody& body, Entry& entry);
     void followCut(btSoftBody& body, Entry& entry);

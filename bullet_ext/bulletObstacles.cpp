@@ -8,8 +8,10 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <sstream>
 #include <utility>
 
+#include "bullet_ext/shapeSignature.h"
 #include "collision/proximity/obstacle_trees.h"
 #include "data/core/errors.h"
 
@@ -17,10 +19,18 @@ namespace cloth {
 
 namespace {
 
+bool canMove(const btCollisionObject& object) {
+    return object.isKinematicObject() || !object.isStaticObject();
+}
+
+bool isInWorld(const btCollisionObject& object) {
+    return object.getBroadphaseHandle() != nullptr;
+}
+
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
-    if (object.isKinematicObject() || !object.isStaticObject())
+    if (canMove(object))
         btTransformUtil::integrateTransform(
             object.getWorldTransform(), -object.getInterpolationLinearVelocity(),
             -object.getInterpolationAngularVelocity(), static_cast<btScalar>(h), previous);
@@ -98,6 +108,7 @@ void BulletObstacles::beginStep(double h) {
         if (animation.mesh.duration <= 0.0) animation.mesh.duration = h;
         animation.begin = animation.end;
         animation.end += h;
+        animation.was_in_world = animation.was_in_world || isInWorld(*object);
     }
     forgetUnseen();
 }
@@ -126,7 +137,11 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
     if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0))
         throw ArgumentError("animated obstacle", "vertices or duration are not finite",
                             "check the animation before handing it over");
-    m_animated.insert_or_assign(object, Animation(std::move(mesh)));
+    Animation animation(std::move(mesh));
+    const auto known = m_animated.find(object);
+    animation.was_in_world =
+        isInWorld(*object) || (known != m_animated.end() && known->second.was_in_world);
+    m_animated.insert_or_assign(object, std::move(animation));
 }
 
 bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
@@ -142,6 +157,26 @@ bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& 
     if (!body.checkCollideWith(&object) || !object.checkCollideWith(&body)) return false;
     const auto& disabled = body.m_collisionDisabledObjects;
     return disabled.findLinearSearch(&object) == disabled.size();
+}
+
+/// An animation whose object has left the world has left it, too.
+bool BulletObstacles::touches(const btSoftBody& body, const btCollisionObject& object,
+                              const Animation& animation, const Vec3& low, const Vec3& high) const {
+    const bool left = animation.was_in_world && !isInWorld(object);
+    return !left && collides(body, object) && animation.near(low, high);
+}
+
+double BulletObstacles::frictionOf(const btSoftBody& body, const btCollisionObject& object) {
+    if (!(object.getFriction() >= 0)) {
+        std::ostringstream message;
+        message << "collision object " << object.getUserIndex() << " at "
+                << static_cast<const void*>(&object)
+                << ": its friction is negative or no number, and counts as 0 for cloth. Remedy: "
+                   "check what the program gives to setFriction()";
+        m_messages.push_back(message.str());
+    }
+    return std::min(usableFriction(body.m_cfg.kDF) * usableFriction(object.getFriction()),
+                    kMostFriction);
 }
 
 void BulletObstacles::refreshParts(Track& track, const btCollisionObject& object) {
@@ -160,10 +195,16 @@ void BulletObstacles::refreshParts(Track& track, const btCollisionObject& object
 BulletObstacles::Track& BulletObstacles::update(const btCollisionObject& object) {
     Track& track = m_tracks[&object];
     if (track.step == m_step) return track;
+    const int world_id = worldIdOf(object);
+    const bool came_back = track.world_id != 0 && track.world_id != world_id;
+    if (came_back) track.step = -1;  // nothing of it holds any more
+    track.world_id = world_id;
     refreshParts(track, object);
     const btTransform& target = object.getWorldTransform();
-    if (track.step != m_step - 1) {
-        track.begin = posePreviously(object, m_h);
+    if (track.step != m_step - 1 || !canMove(object)) {
+        // The way of a kinematic body that came back is a velocity to Bullet.
+        const bool placed = came_back && object.isKinematicObject();
+        track.begin = placed ? toPose(target) : posePreviously(object, m_h);
         track.end = toPose(target);
         track.remaining = 0.0;
     } else {
@@ -241,14 +282,13 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
                                             std::vector<const btCollisionObject*>* owners) {
     std::vector<Obstacle> obstacles;
     std::vector<const btCollisionObject*> objects;
-    const double softness = body.m_cfg.kDF;
     for (const btCollisionObject* object : objectsIn(body, low, high)) {
-        append(update(*object), softness * object->getFriction(), span, obstacles);
+        append(update(*object), frictionOf(body, *object), span, obstacles);
         objects.resize(obstacles.size(), object);
     }
     for (const auto& [object, animation] : m_animated)
-        if (collides(body, *object) && animation.near(low, high)) {
-            append(animation, softness * object->getFriction(), span, obstacles);
+        if (touches(body, *object, animation, low, high)) {
+            append(animation, frictionOf(body, *object), span, obstacles);
             objects.resize(obstacles.size(), object);
         }
     sortByGeometry(obstacles, objects);
@@ -275,11 +315,12 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
                                                      const Vec3& high) const {
     std::vector<NearObject> near;
     for (const btCollisionObject* object : objectsIn(body, low, high))
-        near.push_back({object, object->getWorldTransform(),
+        near.push_back({object, worldIdOf(*object), object->getWorldTransform(),
                         shapeSignature(*object->getCollisionShape()), false});
     for (const auto& [object, animation] : m_animated)
-        if (collides(body, *object) && animation.near(low, high))
-            near.push_back({object, object->getWorldTransform(), 0, !animation.stands()});
+        if (touches(body, *object, animation, low, high))
+            near.push_back(
+                {object, worldIdOf(*object), object->getWorldTransform(), 0, !animation.stands()});
     std::sort(near.begin(), near.end(), [](const NearObject& a, const NearObject& b) {
         return std::less<const btCollisionObject*>()(a.object, b.object);
     });
@@ -371,7 +412,7 @@ std::vector<SlidingSolid> BulletObstacles::slidingNear(const btSoftBody& body, c
             sliding.near.body = const_cast<btRigidBody*>(rigid);
         sliding.near.inverse = interpolate(track.begin, track.end, time / m_h).inverse();
         sliding.near.parts = &distancesOf(track);
-        sliding.friction = static_cast<double>(object->getFriction());
+        sliding.friction = usableFriction(object->getFriction());
         sliding.motion = track.end * track.begin.inverse();
         sliding.duration = m_h;
         solids.push_back(sliding);

@@ -59,7 +59,7 @@ struct NearSolid {
 /// A solid that cloth slides on.
 struct SlidingSolid {
     NearSolid near;
-    double friction = 0.0;           ///< Bullet's, of the object
+    double friction = 0.0;           ///< of the object, see usableFriction()
     Pose motion = Pose::Identity();  ///< takes it from where it was one world step ago to now
     double duration = 1.0;           ///< of the world step (s)
 
@@ -70,6 +70,7 @@ struct SlidingSolid {
 /// What sleeping cloth has to know of an object near it.
 struct NearObject {
     const btCollisionObject* object = nullptr;
+    int world_id = 0;  ///< worldIdOf()
     btTransform pose;
     size_t shape = 0;    ///< shapeSignature()
     bool moves = false;  ///< an animated mesh under way
@@ -80,7 +81,8 @@ struct NearObject {
 /// Bullet gives poses at the end of a step only, and those of kinematic bodies once for all
 /// sub-steps of a stepSimulation(). So the pose of every object near cloth is remembered, a
 /// kinematic body's jump is spread over the time that its velocity says it takes, and times beyond
-/// the present step are extrapolated with the velocity of the step.
+/// the present step are extrapolated with the velocity of the step. Static objects that are
+/// elsewhere were put there, as was an object that left the world and came back: they jump.
 class BulletObstacles {
  public:
     BulletObstacles();
@@ -127,11 +129,13 @@ class BulletObstacles {
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
 
-    /// Messages since the last call: shapes that cannot be obstacles, each reported once.
+    /// Messages since the last call: shapes that cannot be obstacles, each reported once, and
+    /// frictions that are none.
     std::vector<std::string> takeMessages();
 
  private:
     struct Track {
+        int world_id = 0;  ///< of the object: another one may have its address later
         size_t signature = 0;
         std::vector<ShapePart> parts;
         std::vector<PartDistance> distances;  ///< of the parts; made when asked for
@@ -148,6 +152,7 @@ class BulletObstacles {
 
         AnimatedMesh mesh;
         Box box0, box1;                 ///< around x0 and x1: every body of the world asks for them
+        bool was_in_world = false;      ///< its object was, at some time
         double begin = 0.0, end = 0.0;  ///< the present world step, counted from x0 (s)
         bool near(const Vec3& low, const Vec3& high) const;
         /// A mesh that was not given anew stands still; one that was is assumed to go on as it
@@ -156,6 +161,9 @@ class BulletObstacles {
     };
 
     bool collides(const btSoftBody& body, const btCollisionObject& object) const;
+    bool touches(const btSoftBody& body, const btCollisionObject& object,
+                 const Animation& animation, const Vec3& low, const Vec3& high) const;
+    double frictionOf(const btSoftBody& body, const btCollisionObject& object);
     std::vector<const btCollisionObject*> objectsIn(const btSoftBody& body, const Vec3& low,
                                                     const Vec3& high) const;
     Track& update(const btCollisionObject& object);

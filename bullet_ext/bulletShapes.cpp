@@ -1,11 +1,11 @@
 #include "bullet_ext/bulletShapes.h"
 
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <LinearMath/btConvexHullComputer.h>
 #include <btBulletCollisionCommon.h>
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <map>
 
 #include "data/core/mesh.h"
@@ -104,6 +104,24 @@ struct TriangleCollector : btTriangleCallback {
     }
 };
 
+bool mirrors(const btVector3& scaling) {
+    return ((scaling.x() < 0) != (scaling.y() < 0)) != (scaling.z() < 0);
+}
+
+/// Whether triangles are clockwise where the user's mesh is counter-clockwise: Bullet scales their
+/// corners, and leaves their order.
+bool isMirrored(const btConcaveShape& shape) {
+    const bool mirrored = mirrors(shape.getLocalScaling());
+    if (shape.getShapeType() != SCALED_TRIANGLE_MESH_SHAPE_PROXYTYPE) return mirrored;
+    const auto& scaled = static_cast<const btScaledBvhTriangleMeshShape&>(shape);
+    return mirrored != mirrors(scaled.getChildShape()->getLocalScaling());
+}
+
+/// Bullet's triangles of a heightfield face up along y, and down along x and z.
+bool facesDown(const btHeightfieldTerrainShape& shape, const Points& vertices, const Faces& faces) {
+    return face_area_vectors(vertices, faces).col(shape.getUpAxis()).sum() < 0.0;
+}
+
 ShapePart concavePart(const btConcaveShape& shape) {
     TriangleCollector collector;
     const btVector3 reach(kWorldSize, kWorldSize, kWorldSize);
@@ -115,6 +133,11 @@ ShapePart concavePart(const btConcaveShape& shape) {
     for (size_t f = 0; f < collector.triangles.size(); ++f)
         for (int c = 0; c < 3; ++c)
             faces(static_cast<Eigen::Index>(f), c) = collector.triangles[f][static_cast<size_t>(c)];
+    const bool inside_out =
+        shape.getShapeType() == TERRAIN_SHAPE_PROXYTYPE
+            ? facesDown(static_cast<const btHeightfieldTerrainShape&>(shape), vertices, faces)
+            : isMirrored(shape);
+    if (inside_out) faces.col(1).swap(faces.col(2));
     return meshPart(std::move(vertices), std::move(faces));
 }
 
@@ -234,23 +257,6 @@ std::vector<ShapePart> partsOfShape(const btCollisionShape& shape) {
     std::vector<ShapePart> parts = {partOfShape(shape)};
     if (isEmpty(parts.front())) parts.clear();
     return parts;
-}
-
-size_t shapeSignature(const btCollisionShape& shape) {
-    btVector3 low, high;
-    shape.getAabb(btTransform::getIdentity(), low, high);
-    const float values[] = {low.x(),  low.y(),  low.z(),          high.x(),
-                            high.y(), high.z(), shape.getMargin()};
-    size_t hash = static_cast<size_t>(shape.getShapeType());
-    if (shape.isCompound())
-        hash += 64u *
-                static_cast<size_t>(static_cast<const btCompoundShape&>(shape).getUpdateRevision());
-    for (float value : values) {
-        unsigned bits;
-        std::memcpy(&bits, &value, sizeof bits);
-        hash = hash * 1099511628211ull ^ bits;
-    }
-    return hash;
 }
 
 }  // namespace cloth

@@ -24,7 +24,8 @@ struct ShapePart {
 /// The surface of a Bullet collision shape as obstacles. Spheres, boxes, capsules and planes stay
 /// what they are; every other convex shape (hull, cylinder, cone, ...) becomes a mesh without
 /// Bullet's collision margin; every concave shape (triangle mesh, scaled, GImpact, heightfield)
-/// becomes its triangles; compounds become their children's parts.
+/// becomes its triangles; compounds become their children's parts. Faces of meshes that are
+/// mirrored by their scaling are turned back; those of heightfields face up along its axis.
 ///
 /// @return  empty if the shape is empty or of a kind that has no surface
 std::vector<ShapePart> partsOfShape(const btCollisionShape& shape);
@@ -32,8 +33,5 @@ std::vector<ShapePart> partsOfShape(const btCollisionShape& shape);
 /// Convex hull of points (|P| x 3, m): faces counter-clockwise from outside; no faces if the points
 /// span no volume.
 TriMesh convexHull(const Points& points);
-
-/// A number that changes when the shape at an address is replaced or rescaled.
-size_t shapeSignature(const btCollisionShape& shape);
 
 }  // namespace cloth

@@ -6,8 +6,11 @@
 BT_USE_DOUBLE_PRECISION and link bullet.pc (Debian), not bullet-float64.pc"
 #endif
 
+#include <BulletCollision/BroadphaseCollision/btBroadphaseProxy.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <LinearMath/btTransform.h>
+
+#include <algorithm>
 
 #include "data/core/boundary.h"
 
@@ -31,6 +34,22 @@ inline Eigen::Matrix3d toMatrix(const btMatrix3x3& m) {
 /// Whether it is a part of a btMultiBody.
 inline bool isLink(const btCollisionObject& object) {
     return object.getInternalType() == btCollisionObject::CO_FEATHERSTONE_LINK;
+}
+
+/// A number that an object gets when it is added to a world; 0 if it is in none. Bullet's
+/// btDbvtBroadphase never gives one twice; those of btAxisSweep3 may come again.
+inline int worldIdOf(const btCollisionObject& object) {
+    const btBroadphaseProxy* proxy = object.getBroadphaseHandle();
+    return proxy ? proxy->getUid() : 0;
+}
+
+/// Holds cloth on all slopes below 89.4 degrees. Much larger ones are no numbers for solvers.
+constexpr double kMostFriction = 100.0;
+
+/// A user's friction, or kDF, as steppers can take it: 0 if it is negative or no number, and
+/// kMostFriction at most.
+inline double usableFriction(btScalar friction) {
+    return friction > 0 ? std::min(static_cast<double>(friction), kMostFriction) : 0.0;
 }
 
 inline bool isFinite(const btVector3& v) {

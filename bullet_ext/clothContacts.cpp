@@ -276,7 +276,7 @@ std::vector<ClothContacts::Part> ClothContacts::partsOf(const std::vector<Member
     for (const Member& member : group)
         parts.push_back({member.build, member.step->endsWithWorldStep(),
                          massRatio(*member.body, member.step->garment()),
-                         static_cast<double>(member.body->m_cfg.kDF)});
+                         usableFriction(member.body->m_cfg.kDF)});
     return parts;
 }
 

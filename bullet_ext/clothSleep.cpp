@@ -91,7 +91,8 @@ bool ClothSleep::outsideChanged(const Outside& now) const {
     if (now.objects.size() != m_before.objects.size()) return true;
     for (size_t i = 0; i < now.objects.size(); ++i) {
         const NearObject &a = now.objects[i], &b = m_before.objects[i];
-        if (a.object != b.object || a.shape != b.shape || a.moves || moved(a.pose, b.pose))
+        if (a.object != b.object || a.world_id != b.world_id || a.shape != b.shape || a.moves ||
+            moved(a.pose, b.pose))
             return true;
     }
     return false;

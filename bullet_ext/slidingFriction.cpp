@@ -101,7 +101,7 @@ std::vector<Slider> findSliders(const btSoftBody& body, const SlidingStep& step)
                         gravity,
                         Vec3(step.from.v.row(i)) - carried,
                         Vec3(step.to.v.row(i)) - carried,
-                        static_cast<double>(body.m_cfg.kDF) * touch.solid->friction,
+                        usableFriction(body.m_cfg.kDF) * touch.solid->friction,
                         touch.distance < kRubbed,
                         false};
         contact.coefficient = std::clamp(contact.coefficient, 0.0, 1.0);

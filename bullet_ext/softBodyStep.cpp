@@ -162,15 +162,29 @@ int SoftBodyStep::restoreNodes() {
 
 void SoftBodyStep::takeNodes() {
     const std::vector<char>& pinned = m_garment->is_pinned();
+    bool all_moved = true;
     for (int i = 0; i < m_body.m_nodes.size(); ++i) {
         btSoftBody::Node& node = m_body.m_nodes[i];
         const float* written = &m_written[static_cast<size_t>(i) * 6];
         const bool moved = differs(node.m_x, written), pushed = differs(node.m_v, written + 3);
         node.m_q = node.m_x;
-        if (pinned[static_cast<size_t>(i)] || !(moved || pushed)) continue;
+        if (pinned[static_cast<size_t>(i)]) continue;
+        all_moved = all_moved && moved;
+        if (!moved && !pushed) continue;
         if (moved) m_shown.x.row(i) = toVec3(node.m_x);
         if (pushed) m_shown.v.row(i) = toVec3(node.m_v);
         m_cloth_step.valid = false;
+    }
+    if (all_moved && !m_cloth_step.valid) placePins();
+}
+
+/// Who moves the whole body, as translate() does, puts its pins elsewhere, too: they do not drag
+/// the cloth there.
+void SoftBodyStep::placePins() {
+    for (const int pin : m_garment->pins()) {
+        const btSoftBody::Node& node = m_body.m_nodes[pin];
+        const bool is_anchored = node.m_im > 0;
+        if (!is_anchored) m_shown.x.row(pin) = toVec3(node.m_x);
     }
 }
 

@@ -143,6 +143,7 @@ class SoftBodyStep {
     int restoreNodes();
     void takeConstants();
     void takeNodes();
+    void placePins();
     void takeWind();
     void keepWindFromGiving(const std::vector<btVector3>& before);
     void takeForces();

@@ -82,6 +82,40 @@ TEST_F(BadInput, AWorldInCentimetresIsTold) {
     expect_told("gravity is 981 m/s^2", "centimetres");
 }
 
+TEST_F(BadInput, GravityThatIsNoNumberCountsAsZeroAndIsTold) {
+    for (const btScalar spoilt : {kNan, std::numeric_limits<btScalar>::infinity()}) {
+        healthy->setUserIndex(7);
+        world.step(1.0 / 60.0);
+        const btVector3 before = healthy->m_nodes[12].m_v;
+        world.info().m_gravity.setY(spoilt);
+        for (int i = 0; i < 5; ++i) {
+            world.step(1.0 / 60.0);
+            EXPECT_FALSE(isFinite(world.info().m_gravity)) << "it is the user's";
+        }
+        expect_told("gravity is not finite", "counts as 0");
+        EXPECT_NEAR(healthy->m_nodes[12].m_v.y(), before.y(), 0.4);
+        world.info().m_gravity = {0, -9.81f, 0};
+        world.step(1.0 / 60.0, 6);
+        EXPECT_LT(healthy->m_nodes[12].m_v.y(), before.y() - 0.5f);
+    }
+    EXPECT_EQ(solver.status().failedSteps, 0);
+}
+
+TEST_F(BadInput, FrictionThatIsNoneOrInfiniteFailsNoStep) {
+    constexpr btScalar infinite = std::numeric_limits<btScalar>::infinity();
+    btRigidBody* floor = world.add(new btBoxShape({2, 0.5f, 2}), {0, -0.6f, 0});
+    btSoftBody* body = world.add(patch(world.info(), {0, 0, 0}, 9));
+    for (int i = 0; i < 40; ++i) {
+        const btScalar values[] = {kNan, infinite, -1, 0.5f, -infinite};
+        floor->setFriction(values[i % 5]);
+        body->m_cfg.kDF = values[i / 5 % 5];
+        world.step(1.0 / 60.0);
+    }
+    EXPECT_EQ(solver.status().clothBodies, 2);
+    EXPECT_EQ(solver.status().failedSteps, 0);
+    EXPECT_GT(node(*body, 40).y(), -0.12);
+}
+
 TEST_F(BadInput, AnEdgeOfThreeFacesIsTold) {
     btSoftBody* body = patch(world.info(), {0, 0, 0});
     body->appendNode({0, 0.3f, 0}, 1);

@@ -68,6 +68,50 @@ TEST(BulletObstacles, FrictionIsTheProductOfBoth) {
     EXPECT_NEAR(scene.obstacles()[0].friction, 0.4, 1e-6);
 }
 
+TEST(BulletObstacles, FrictionThatIsNoneCountsAsZeroAndIsTold) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    for (const float none : {nan, -1.0f, -infinite}) {
+        Scene scene;
+        scene.cloth->m_cfg.kDF = 0.5f;
+        btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {0, 0, 0});
+        sphere->setUserIndex(7);
+        sphere->setFriction(none);
+        scene.world.step(1.0 / 60.0, 3);
+        EXPECT_EQ(scene.obstacles().at(0).friction, 0.0);
+        ASSERT_EQ(scene.solver.status().messages.size(), 1u);
+        const std::string& text = scene.solver.status().messages[0].text;
+        for (const char* part : {"collision object 7 at ", "its friction is negative", "Remedy: "})
+            EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+    for (const float none : {nan, -1.0f, -infinite}) {
+        Scene scene;
+        scene.cloth->m_cfg.kDF = none;
+        scene.world.add(new btSphereShape(0.1f), {0, 0, 0})->setFriction(0.8f);
+        scene.world.step(1.0 / 60.0);
+        EXPECT_EQ(scene.obstacles().at(0).friction, 0.0);
+        ASSERT_EQ(scene.solver.status().messages.size(), 1u);
+        EXPECT_NE(scene.solver.status().messages[0].text.find("kDF is negative"),
+                  std::string::npos);
+    }
+}
+
+TEST(BulletObstacles, InfiniteFrictionIsALargeOne) {
+    constexpr float infinite = std::numeric_limits<float>::infinity();
+    for (const float large : {1e4f, std::numeric_limits<float>::max(), infinite}) {
+        Scene scene;
+        btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {0, 0, 0});
+        sphere->setFriction(large);
+        scene.cloth->m_cfg.kDF = large;
+        scene.world.step(1.0 / 60.0);
+        EXPECT_EQ(scene.obstacles().at(0).friction, kMostFriction);
+        scene.cloth->m_cfg.kDF = 0;
+        scene.world.step(1.0 / 60.0);
+        EXPECT_EQ(scene.obstacles().at(0).friction, 0.0);
+        EXPECT_TRUE(scene.solver.status().messages.empty());
+    }
+}
+
 TEST(BulletObstacles, CollisionFiltersAreRespected) {
     Scene scene;
     btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {0, 0, 0});
@@ -110,6 +154,73 @@ TEST(BulletObstacles, JumpOfAKinematicBodyIsSpreadOverTheSubSteps) {
             EXPECT_NEAR(o.pose1.translation().x(), 0.08 * call + 0.01 * (i + 1), 1e-5);
         }
     }
+}
+
+TEST(BulletObstacles, StaticObjectThatIsPutElsewhereJumps) {
+    Scene scene;
+    btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {-0.2f, 0, 0});
+    scene.world.step(1.0 / 60.0, 2);
+    move(sphere, {0.4f, 0, 0});
+    scene.world->updateSingleAabb(sphere);
+    scene.world.step(1.0 / 60.0);
+    EXPECT_NEAR(scene.begin().x(), 0.2, 1e-6);
+    EXPECT_EQ(scene.begin(), scene.end());
+}
+
+TEST(BulletObstacles, BodyThatCameBackElsewhereJumps) {
+    for (const int kind : {0, 1, 2}) {
+        Scene scene;
+        btRigidBody* sphere = scene.world.add(new btSphereShape(0.1f), {-0.2f, 0, 0}, kind == 1,
+                                              kind == 2 ? 1.0f : 0.0f);
+        sphere->setGravity({0, 0, 0});
+        scene.world.step(1.0 / 60.0, 2);
+        for (const int steps_away : {0, 3}) {
+            const double before = scene.end().x();
+            scene.world->removeRigidBody(sphere);
+            scene.world.step(1.0 / 60.0, steps_away);
+            move(sphere, {0.4f, 0, 0});
+            scene.world->addRigidBody(sphere);
+            sphere->setGravity({0, 0, 0});
+            scene.world.step(1.0 / 60.0);
+            EXPECT_NEAR(scene.begin().x(), before + 0.4, 1e-4) << kind << " " << steps_away;
+            EXPECT_NEAR(scene.end().x(), before + 0.4, 1e-4) << kind << " " << steps_away;
+            scene.world.step(1.0 / 60.0);
+            EXPECT_LT((scene.end() - scene.begin()).norm(), 1e-4);
+        }
+        // What it does from now on is its motion.
+        if (kind != 1) continue;
+        move(sphere, {0.01f, 0, 0});
+        scene.world.step(1.0 / 60.0);
+        EXPECT_NEAR(scene.end().x() - scene.begin().x(), 0.01, 1e-6);
+    }
+}
+
+/// As in a program that deletes one and makes another, and gets the same memory again.
+TEST(BulletObstacles, BodyAtTheAddressOfAnotherIsAnotherOne) {
+    alignas(btRigidBody) unsigned char place[sizeof(btRigidBody)];
+    alignas(btSphereShape) unsigned char shape_place[sizeof(btSphereShape)];
+    Scene scene;
+    const auto make = [&](btScalar radius, const btVector3& at) {
+        auto* shape = new (shape_place) btSphereShape(radius);
+        auto* body = new (place) btRigidBody(1, nullptr, shape, {1, 1, 1});
+        body->setWorldTransform(btTransform(btQuaternion::getIdentity(), at));
+        body->setInterpolationWorldTransform(body->getWorldTransform());
+        scene.world->addRigidBody(body);
+        body->setGravity({0, 0, 0});
+        return body;
+    };
+    btRigidBody* body = make(0.1f, {-0.2f, 0, 0});
+    scene.world.step(1.0 / 60.0, 2);
+    EXPECT_NEAR(scene.end().x(), -0.2, 1e-6);
+    scene.world->removeRigidBody(body);
+    body->~btRigidBody();
+    body = make(0.15f, {0.2f, 0, 0});
+    scene.world.step(1.0 / 60.0);
+    EXPECT_NEAR(scene.begin().x(), 0.2, 1e-6);
+    EXPECT_NEAR(scene.end().x(), 0.2, 1e-6);
+    EXPECT_NEAR(scene.obstacles().at(0).radius, 0.15, 1e-6);
+    scene.world->removeRigidBody(body);
+    body->~btRigidBody();
 }
 
 TEST(BulletObstacles, TurningIsInterpolatedToo) {
@@ -186,6 +297,47 @@ TEST(BulletObstacles, RemovedAndReshapedBodiesAreFollowed) {
     EXPECT_TRUE(scene.obstacles().empty());
 }
 
+TEST(BulletObstacles, ChildOfACompoundThatMovesIsFollowed) {
+    btSphereShape post(0.05f), platform(0.1f);
+    auto* compound = new btCompoundShape;
+    const auto at = [](const btVector3& place) {
+        return btTransform(btQuaternion::getIdentity(), place);
+    };
+    compound->addChildShape(at({-1, 0, 0}), &post);
+    compound->addChildShape(at({1, 0, 0}), &post);
+    compound->addChildShape(at({0, 0, 0}), &platform);
+    Scene scene;
+    scene.world.add(compound, {0, 0, 0});
+    scene.world.step(1.0 / 60.0);
+    const auto place = [&] {
+        for (const Obstacle& obstacle : scene.obstacles())
+            if (obstacle.radius > 0.07) return obstacle.pose1.translation().x();
+        return std::numeric_limits<double>::quiet_NaN();
+    };
+    EXPECT_NEAR(place(), 0.0, 1e-6);
+    compound->updateChildTransform(2, at({0.5f, 0, 0}));
+    scene.world.step(1.0 / 60.0);
+    EXPECT_NEAR(place(), 0.5, 1e-6);
+}
+
+TEST(BulletObstacles, AnotherMeshWithTheSameBoxIsFollowed) {
+    const auto two_of = [](const btVector3& corner, btTriangleMesh& mesh) {
+        mesh.addTriangle({0, 0, 0}, {0, 0, 1}, {1, 0, 0});
+        mesh.addTriangle({1, 0, 1}, {1, 0, 0}, corner);
+    };
+    btTriangleMesh square, slit;
+    two_of({0, 0, 1}, square);
+    two_of({0.5f, 0, 1}, slit);
+    btBvhTriangleMeshShape other(&slit, true);
+    Scene scene;
+    btRigidBody* body = scene.world.add(new btBvhTriangleMeshShape(&square, true), {0, 0.1f, 0});
+    scene.world.step(1.0 / 60.0);
+    EXPECT_EQ(scene.obstacles().at(0).x1.rows(), 4);
+    body->setCollisionShape(&other);
+    scene.world.step(1.0 / 60.0);
+    EXPECT_EQ(scene.obstacles().at(0).x1.rows(), 5);
+}
+
 TEST(BulletObstacles, MeshKeepsItsFacesPointer) {
     Scene scene;
     btTriangleMesh mesh;
@@ -233,6 +385,40 @@ TEST(BulletObstacles, AnimatedMeshReplacesTheShapeAndIsInterpolated) {
     scene.solver.removeAnimatedObstacle(handle);
     scene.world.step(1.0 / 60.0);
     EXPECT_EQ(scene.obstacles().at(0).shape, ObstacleShape::sphere);
+}
+
+TEST(BulletObstacles, AnimatedMeshLeavesTheWorldWithItsObject) {
+    Scene scene;
+    btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
+    const auto faces = one_face();
+    const auto give = [&] {
+        scene.solver.setAnimatedObstacle(handle, faces, triangle(0), triangle(0));
+    };
+    give();
+    scene.world.step(1.0 / 60.0);
+    EXPECT_EQ(scene.obstacles().size(), 1u);
+    scene.world->removeRigidBody(handle);
+    scene.world.step(1.0 / 60.0);
+    EXPECT_TRUE(scene.obstacles().empty());
+    give();
+    scene.world.step(1.0 / 60.0);
+    EXPECT_TRUE(scene.obstacles().empty());
+    scene.world->addRigidBody(handle);
+    scene.world.step(1.0 / 60.0);
+    ASSERT_EQ(scene.obstacles().size(), 1u);
+    EXPECT_EQ(scene.obstacles()[0].faces, faces);
+}
+
+TEST(BulletObstacles, AnimatedMeshOfAnObjectThatNeverWasInAWorldActs) {
+    Scene scene;
+    btSphereShape shape(0.1f);
+    btCollisionObject handle;
+    handle.setCollisionShape(&shape);
+    handle.setWorldTransform(btTransform::getIdentity());
+    scene.solver.setAnimatedObstacle(&handle, one_face(), triangle(0), triangle(0));
+    scene.world.step(1.0 / 60.0, 2);
+    EXPECT_EQ(scene.obstacles().size(), 1u);
+    scene.solver.removeAnimatedObstacle(&handle);
 }
 
 TEST(BulletObstacles, LimbsOfAnAnimatedMeshReachTheStepper) {

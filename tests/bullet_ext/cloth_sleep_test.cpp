@@ -96,6 +96,32 @@ TEST_F(SleepingSheet, WakesWhenItsTableIsMovedOrTaken) {
     world->addRigidBody(table);
 }
 
+TEST_F(SleepingSheet, WakesWhenItsTableIsTakenForAnotherOfItsShape) {
+    ASSERT_TRUE(asleep());
+    world->removeRigidBody(table);
+    world->addRigidBody(table);
+    expect_wakes("another body");
+}
+
+TEST_F(SleepingSheet, WakesWhenAChildOfItsTableIsMoved) {
+    btBoxShape post({0.1f, 0.1f, 0.1f}), top({0.8f, 0.05f, 0.8f});
+    btCompoundShape compound;
+    const auto at = [](const btVector3& place) {
+        return btTransform(btQuaternion::getIdentity(), place);
+    };
+    compound.addChildShape(at({-4, 0, -4}), &post);
+    compound.addChildShape(at({4, 0.5f, 4}), &post);
+    compound.addChildShape(at({0, 0.45f, 0}), &top);
+    table->setCollisionShape(&compound);
+    for (int i = 0; i < 60 * 6; ++i) world.step(1.0 / 60.0);
+    ASSERT_TRUE(asleep());
+    compound.updateChildTransform(2, at({2.5f, 0.45f, 0}));
+    expect_wakes("child");
+    world.step(1.0 / 60.0, 30);
+    EXPECT_LT(node(*cloth, 40).y(), -0.5);
+    world.remove(table);
+}
+
 TEST_F(SleepingSheet, WakesWhenABallFallsOnIt) {
     ASSERT_TRUE(asleep());
     btRigidBody* ball = world.add(new btSphereShape(0.25f), {0, 0.8f, 0}, false, 0.5f);

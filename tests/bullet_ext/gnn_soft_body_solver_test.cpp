@@ -6,7 +6,9 @@
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
+#include "bullet_ext/softBodyGarment.h"
 #include "data/core/errors.h"
+#include "gnn/physics/stepper/cloth_stepper.h"
 #include "tests/bullet_ext/bullet_world.h"
 #include "tests/test_meshes.h"
 
@@ -500,6 +502,52 @@ TEST(GnnSolver, AddingABodyAgainStartsAfresh) {
     world->addSoftBody(cloth);
     world.step(1.0 / 60.0);
     EXPECT_EQ(solver.status().clothBodies, 1);
+}
+
+// In the world again, it is another body: with the same address it is like one that was made where
+// another one was deleted.
+TEST(GnnSolver, SettingsOfABodyThatLeftAreNotThoseOfTheNextAtItsAddress) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    btSoftBody* cloth = world.add(patch(world.info(), {0, 5, 0}));
+    const auto come_again = [&] {
+        world->removeSoftBody(cloth);
+        world->addSoftBody(cloth);
+    };
+    solver.setDetail(cloth, btGnnDetail::offScreen());
+    world.step(1.0 / 60.0, 3);
+    EXPECT_EQ(fastest_node(*cloth), 0.0);
+    come_again();
+    solver.attach(cloth);
+    world.step(1.0 / 60.0, 3);
+    EXPECT_NEAR(fastest_node(*cloth), 9.81 * 3 / 60, 1e-4) << "it is stepped";
+    come_again();
+    solver.setDetail(cloth, btGnnDetail::offScreen());
+    const double y = node(*cloth, 0).y();
+    world.step(1.0 / 60.0, 3);
+    EXPECT_EQ(node(*cloth, 0).y(), y) << "what is asked of it before its first step counts";
+}
+
+TEST(GnnSolver, ClothThatIsPutElsewhereIsNotDraggedThereByItsPins) {
+    for (const auto& fabric : {Fabric::soft_cotton(), Fabric::real_cotton()}) {
+        btGnnSoftBodySolver solver(
+            [](const Garment& garment) { return std::make_unique<ClothStepper>(garment); },
+            {fabric});
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 1, 0}, 9, 1 + 2 + 4 + 8));
+        cloth->m_cfg.kDP = 0.05f;
+        world.step(1.0 / 60.0, 120);
+        const Points before = nodePositions(*cloth);
+        const double speed = fastest_node(*cloth);
+        const btVector3 way(3, 1, 0);
+        cloth->translate(way);
+        for (int k = 0; k < 30; ++k) {
+            world.step(1.0 / 60.0);
+            EXPECT_LT(fastest_node(*cloth), speed + 0.1);
+        }
+        const Points moved = nodePositions(*cloth).rowwise() - toVec3(way).transpose();
+        EXPECT_LT((moved - before).rowwise().norm().maxCoeff(), 0.02);
+    }
 }
 
 TEST(GnnSolver, TimescaleStretchesTheClothsTimeOnly) {

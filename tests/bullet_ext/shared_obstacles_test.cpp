@@ -100,6 +100,29 @@ TEST(SharedObstacles, TwoGarmentsOnOneCharacterShareOneRefit) {
     }
 }
 
+TEST(SharedObstacles, MeshesThatStayAsTheyAreAreBuiltOnce) {
+    const TriMesh ball = sphere_mesh(0.3, 20);
+    btTriangleMesh triangles;
+    const auto at = [&](Eigen::Index f, int c) {
+        const Vec3 x = ball.vertices.row(ball.faces(f, c));
+        return btVector3(btScalar(x.x()), btScalar(x.y()), btScalar(x.z()));
+    };
+    for (Eigen::Index f = 0; f < ball.faces.rows(); ++f)
+        triangles.addTriangle(at(f, 0), at(f, 1), at(f, 2), true);
+    btBvhTriangleMeshShape mesh(&triangles, true);
+    btGnnSoftBodySolver solver(quasi_newton());
+    World world(&solver);
+    auto* compound = new btCompoundShape;
+    compound->addChildShape(btTransform::getIdentity(), &mesh);
+    world.add(compound, {0, 0, 0});
+    world.add(patch(world.info(), {0, 0.31f, 0}, 9));
+    world.step(h, 5);
+    EXPECT_EQ(solver.obstacleTrees().counts().builds, 1);
+    compound->updateChildTransform(0, btTransform(btQuaternion::getIdentity(), {0, -0.01f, 0}));
+    world.step(h, 5);
+    EXPECT_EQ(solver.obstacleTrees().counts().builds, 2);
+}
+
 TEST(SharedObstacles, StepsThatCutAnAnimationJoinToo) {
     Scene scene({13, 9}, quasi_newton());
     for (int frame = 1; frame <= 3; ++frame) {
