@@ -85,10 +85,24 @@ double energyAt(const ClothStep& step, const EnergyBalance::Cloth& cloth, const 
            cloth.masses.dot(x * step.boundary.gravity);
 }
 
-/// What lifts the cloth by a hundredth of its edges (J).
-double smallLift(const ClothStep& step, const EnergyBalance::Cloth& cloth) {
-    return 0.01 * step.garment.mean_edge_length() * step.boundary.gravity.norm() *
-           cloth.masses.sum();
+/// What lifts so much mass (kg) by a hundredth of the cloth's edges (J).
+double smallLift(const ClothStep& step, double mass) {
+    return 0.01 * step.garment.mean_edge_length() * step.boundary.gravity.norm() * mass;
+}
+
+/// What a step of Bullet's loses of the energy of a body that falls (J): half m (g h)^2. What holds
+/// the body up gives that back.
+double lostInFall(const EnergyBalance::Share& share, double length) {
+    const double change = length * static_cast<double>(share.body->getGravity().length());
+    return 0.5 * change * change / static_cast<double>(share.body->getInvMass());
+}
+
+/// Of the bodies that are anchored (kg).
+double hangingMass(const std::vector<EnergyBalance::Share>& shares) {
+    double mass = 0.0;
+    for (const auto& share : shares)
+        if (share.anchored) mass += 1.0 / static_cast<double>(share.body->getInvMass());
+    return mass;
 }
 
 /// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
@@ -143,7 +157,9 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     for (const Share& share : shares) {
         const double gain = gainOf(*share.body, *share.impulse);
         const double borne_before = borneBefore(share, step.length);
-        motion += gain - std::clamp(gain, 0.0, borne_before) + share.lift;
+        const double raised = gain - std::clamp(gain, 0.0, borne_before) + share.lift;
+        motion += raised;
+        if (share.anchored) motion -= std::clamp(raised, 0.0, lostInFall(share, step.length));
     }
     const double stored = cloth.mass_ratio * *energy - *m_elastic;
     m_elastic = cloth.mass_ratio * *energy;
@@ -154,14 +170,26 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     const double little = 0.5 * cloth.masses.sum() * kSlow * kSlow;
     // Bullet pushes bodies that lie in hanging cloth about all the time, and that is work.
     const bool piled = !shares.empty() && !borne && !anchored;
-    const double owed = std::max(0.0, motion + stored + m_debt);
+    const double made = motion + stored + m_debt, owed = std::max(0.0, made);
     // Contacts that push coarse cloth stretch it a little, which seldom becomes motion. It is paid
     // where it does: taken at once, it would be all of slow motion, and cloth creep as in honey.
-    const bool may_wait = shares.empty() && owed <= smallLift(step, cloth);
-    const double surplus = may_wait ? std::clamp(motion, 0.0, owed) : owed;
+    const double small = smallLift(step, cloth.masses.sum());
+    const bool may_wait = shares.empty() && owed <= small;
+    double surplus = may_wait ? std::clamp(motion, 0.0, owed) : owed;
     m_debt = (owed - surplus) * std::exp(-step.length / kForget);
+    // Of what cloth and bodies exchange as they swing, a part is in neither for a step. Taken
+    // whenever it is back, it would be all of the motion where they turn round.
+    if (anchored) {
+        const double most = smallLift(step, cloth.masses.sum() + hangingMass(shares));
+        surplus = std::max(0.0, made - small);
+        m_debt =
+            made > 0.0 ? made - surplus : std::max(made, -most) * std::exp(-step.length / kForget);
+    }
     Result result;
-    if (!(surplus > (piled ? little : 0.0))) return result;
+    if (!(surplus > (piled ? little : 0.0))) {
+        if (piled) m_debt = surplus * std::exp(-step.length / kForget);
+        return result;
+    }
     double left = calmCloth(step, cloth, surplus);
     result.much = left > kTell * little;
     result.limited = left > 0.0;

@@ -202,7 +202,10 @@ Vec3 TwoWayCoupling::withinFriction(const btRigidBody& body, const Vec3& normal,
                                     const Vec3& impulse) const {
     const double push = std::max(0.0, -impulse.dot(normal));
     const Vec3 rub = impulse - impulse.dot(normal) * normal;
-    const double most = static_cast<double>(m_body.m_cfg.kDF * body.getFriction()) * push;
+    const double most =
+        std::min(usableFriction(m_body.m_cfg.kDF) * usableFriction(body.getFriction()),
+                 kMostFriction) *
+        push;
     return -push * normal + (rub.norm() > most ? most / rub.norm() : 1.0) * rub;
 }
 

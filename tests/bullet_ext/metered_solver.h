@@ -10,7 +10,8 @@
 namespace cloth::test {
 
 /// Measures the energy of cloth and rigid bodies around each world step of the cloth. What Bullet
-/// does to its bodies before that, such as lifting them out of each other, does not count.
+/// does to its bodies before that, such as lifting them out of each other, does not count. But what
+/// bodies that hang on the cloth have lost in Bullet's step, as bodies do that fall, may come back.
 class MeteredSolver : public btGnnSoftBodySolver {
  public:
     using btGnnSoftBodySolver::btGnnSoftBodySolver;
@@ -27,8 +28,14 @@ class MeteredSolver : public btGnnSoftBodySolver {
     /// Most energy that there was in motion (J): what the others are compared with.
     double scale() const { return m_scale; }
 
+    void predictMotion(btScalar h) override {
+        m_hanging = ofHanging();
+        btGnnSoftBodySolver::predictMotion(h);
+    }
+
     void solveConstraints(btScalar h) override {
-        const double motion = energy(), before = motion + elastic();
+        const double lost = std::max(0.0, m_hanging - ofHanging());
+        const double motion = energy() + lost, before = motion + elastic();
         btGnnSoftBodySolver::solveConstraints(h);
         const double now = energy();
         m_gained += now - motion;
@@ -43,9 +50,7 @@ class MeteredSolver : public btGnnSoftBodySolver {
         m_moving = 0.0;
         for (const btRigidBody* body : bodies) {
             m_moving += kinetic(*body);
-            if (body->getInvMass() > 0)
-                sum -= toVec3(body->getGravity()).dot(toVec3(body->getCenterOfMassPosition())) /
-                       body->getInvMass();
+            sum += height(*body);
         }
         const Garment* garment = garmentOf(cloth);
         const double ratio = garment ? massRatio(*cloth, *garment) : 0.0;
@@ -59,12 +64,32 @@ class MeteredSolver : public btGnnSoftBodySolver {
         return sum + m_moving;
     }
 
+    /// Motion and height of bodies that are anchored to the cloth (J).
+    double ofHanging() const {
+        double sum = 0.0;
+        for (const btRigidBody* body : bodies)
+            if (isAnchored(*body)) sum += kinetic(*body) + height(*body);
+        return sum;
+    }
+
+    bool isAnchored(const btRigidBody& body) const {
+        for (int a = 0; cloth && a < cloth->m_anchors.size(); ++a)
+            if (cloth->m_anchors[a].m_body == &body) return true;
+        return false;
+    }
+
     /// Of the fabric (J).
     double elastic() const {
         const Garment* garment = garmentOf(cloth);
         return garment ? massRatio(*cloth, *garment) *
                              stepperOf(cloth)->internal_energy(nodePositions(*cloth)).value_or(0.0)
                        : 0.0;
+    }
+
+    static double height(const btRigidBody& body) {
+        if (!(body.getInvMass() > 0)) return 0.0;
+        return -toVec3(body.getGravity()).dot(toVec3(body.getCenterOfMassPosition())) /
+               body.getInvMass();
     }
 
     static double kinetic(const btRigidBody& body) {
@@ -79,6 +104,7 @@ class MeteredSolver : public btGnnSoftBodySolver {
     }
 
  private:
+    double m_hanging = 0.0;  ///< of bodies on the cloth, at the start of the world step (J)
     double m_balance = 0.0, m_gained = 0.0, m_made = 0.0, m_scale = 0.0, m_moving = 0.0;
 };
 
