@@ -40,9 +40,8 @@ struct Options {
 
 /// What is printed at the end.
 struct Outcome {
-    double stretch99 = 1.0, stretch = 1.0;  // length over rest length of the garment's edges
-    double inside = 0.0, deepest = 0.0;     // (m): at the end, at any time
-    double away = 0.0;                      // from the skin at the end (m)
+    cloth::WornState end;
+    double inside = 0.0, deepest = 0.0;  // (m): at the end, at any time
     long failed = 0;
 };
 
@@ -54,6 +53,8 @@ cloth::WeldedCharacter load_skin(const Options& options) {
                 static_cast<int>(skin.rest().vertices.rows()), skin.height());
     skin.duration() > 0.0 ? std::printf("animation of %.2f s\n", skin.duration())
                           : std::printf("no animation: it stands\n");
+    for (const std::string& note : cloth::character_notes(options.character, skin))
+        std::printf("%s\n", note.c_str());
     return skin;
 }
 
@@ -97,28 +98,15 @@ btGnnSoftBodySolver make_solver(const std::string& name) {
         [settings](const cloth::Garment& garment) { return cloth::make_cloth(garment, settings); });
 }
 
-void measure(const cloth::Garment& garment, const btSoftBody& body, const cloth::TriMesh& skin,
-             Outcome& outcome) {
-    cloth::ClothState end = cloth::ClothState::at_rest(garment);
-    cloth::storeState(body, end);
-    outcome.away =
-        cloth::smallest_clearance({end.x, garment.rest().faces}, cloth::SurfaceDistance(skin));
-    std::vector<double> ratios;
-    for (const auto& [a, b] : garment.edges())
-        ratios.push_back((end.x.row(a) - end.x.row(b)).norm() /
-                         (garment.rest().vertices.row(a) - garment.rest().vertices.row(b)).norm());
-    std::sort(ratios.begin(), ratios.end());
-    outcome.stretch99 = ratios[ratios.size() * 99 / 100];
-    outcome.stretch = ratios.back();
+cloth::Points places_of(const cloth::Garment& garment, const btSoftBody& body) {
+    cloth::ClothState state = cloth::ClothState::at_rest(garment);
+    cloth::storeState(body, state);
+    return state.x;
 }
 
-/// What can be looked at in a modeller.
-void save_end(const std::string& folder, const cloth::Garment& garment, const btSoftBody& body,
-              const cloth::TriMesh& skin) {
-    cloth::ClothState end = cloth::ClothState::at_rest(garment);
-    cloth::storeState(body, end);
-    cloth::save_obj(folder + "/garment.obj", {end.x, garment.rest().faces});
-    cloth::save_obj(folder + "/character.obj", skin);
+/// What can be looked at in a modeller: garment and character.
+std::vector<std::string> end_files(const std::string& folder) {
+    return {folder + "/garment.obj", folder + "/character.obj"};
 }
 
 Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
@@ -151,6 +139,7 @@ Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
     const double length = skin.duration() > 0.0 ? skin.duration() : 3.0;
     const double end = options.settle + (options.seconds > 0 ? options.seconds : length);
     Outcome outcome;
+    double skin_time = 0.0;  // of the end of the last step, which may lie beyond `end`
     for (int frame = 0; frame * dt < end; ++frame) {
         // The first pose is held for a while, so that the cloth comes to hang.
         const double now = std::max(0.0, frame * dt - options.settle);
@@ -167,15 +156,21 @@ Outcome run(const Options& options, const cloth::WeldedCharacter& skin,
         if (garment.has_goals())
             solver.setGoals(cloth, cloth::skinned_goals(skinning, skin, now, next), dt);
         world.stepSimulation(static_cast<btScalar>(dt), 0);
+        skin_time = next;
         outcome.inside = solver.status().maxPenetration;
         outcome.deepest = std::max(outcome.deepest, outcome.inside);
     }
     outcome.failed = solver.status().failedSteps + (solver.status().clothBodies == 1 ? 0 : 1);
-    const cloth::TriMesh last{skin.vertices(end - options.settle), *skin.faces()};
-    measure(garment, *cloth, last, outcome);
+    const cloth::TriMesh last{skin.vertices(skin_time), *skin.faces()};
+    const cloth::TriMesh worn{places_of(garment, *cloth), garment.rest().faces};
+    outcome.end = cloth::worn_state(garment, worn.vertices, last);
     for (const btGnnSolverMessage& message : solver.status().messages)
         std::printf("%s\n", message.text.c_str());
-    if (!options.out.empty()) save_end(options.out, garment, *cloth, last);
+    if (!options.out.empty()) {
+        const std::vector<std::string> files = end_files(options.out);
+        cloth::save_obj(files[0], worn);
+        cloth::save_obj(files[1], last);
+    }
     world.removeSoftBody(cloth);
     delete cloth;
     world.removeRigidBody(&person);
@@ -223,6 +218,9 @@ int read_options(int argc, char** argv, Options& options) {
         options.garment = cloth::asset_path("garments/cape.obj");
         if (options.pin.empty()) options.pin = {0.39, 1.0};  // the upper seam
     }
+    if (!options.out.empty())
+        cloth::check_not_overwritten("--out " + options.out, end_files(options.out),
+                                     {options.garment, options.character}, "give another folder");
     return -1;
 }
 
@@ -237,14 +235,13 @@ int main(int argc, char** argv) try {
     const cloth::ClothState start = dress(garment, skin, options.clearance);
     const Outcome outcome = run(options, skin, garment, start);
     std::printf("at the end stretched to %.2f (99 %% of the edges: %.2f) of the rest length\n",
-                outcome.stretch, outcome.stretch99);
+                outcome.end.stretch, outcome.end.stretch99);
     std::printf("deepest point inside the character: %.2f mm, at any time %.2f mm\n",
                 1e3 * outcome.inside, 1e3 * outcome.deepest);
     if (outcome.failed > 0) std::printf("%ld steps failed\n", outcome.failed);
-    const bool lost = outcome.failed > 0 || outcome.away > 0.05 || outcome.stretch99 > 2.0;
-    std::printf("%s\n", lost ? "the garment is lost: it failed, fell off or was torn"
-                             : "the garment is worn");
-    return lost ? 1 : 0;
+    const std::string problem = cloth::worn_problem(outcome.end, outcome.failed);
+    std::printf("%s\n", problem.empty() ? "the garment is worn" : problem.c_str());
+    return problem.empty() ? 0 : 1;
 } catch (const std::exception& error) {
     std::fprintf(stderr, "hello_character: %s\n", error.what());
     return 2;

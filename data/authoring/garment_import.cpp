@@ -44,13 +44,6 @@ double area_of(const TriMesh& mesh) {
     return face_area_vectors(mesh.vertices, mesh.faces).rowwise().norm().sum();
 }
 
-void check_skin(const std::string& name, const TriMesh& skin) {
-    validate_mesh(name, skin);
-    if (signed_volume(skin) < 0.0)
-        throw ArgumentError(name, "it is inside out: its faces look inwards",
-                            "turn its faces (flip normals) in a mesh editor");
-}
-
 void check_vertices(const std::string& name, const TriMesh& mesh) {
     if (mesh.faces.rows() == 0)
         throw ArgumentError(name, "it has no faces", "give a mesh of triangles or polygons");
@@ -98,7 +91,7 @@ class Importer {
     }
 
     TriMesh repair(const TriMesh& mesh) {
-        RepairedMesh repaired = repair_mesh(mesh);
+        RepairedMesh repaired = repair_mesh(mesh, m_settings.garment_name);
         if (repaired.faces_without_area > 0)
             changed(text("%d faces without area were left out", repaired.faces_without_area));
         if (repaired.duplicate_faces > 0)
@@ -139,7 +132,7 @@ class Importer {
                 text("it is a shell, %.1f mm thick: its inner side, %.0f %% of the area, was "
                      "left out",
                      1e3 * side->thickness, 1e2 * side->share));
-            garment = repair_mesh(keep_faces(garment, keep)).mesh;
+            garment = repair_mesh(keep_faces(garment, keep), m_settings.garment_name).mesh;
         }
         const std::vector<int> numbers = face_pieces(garment.faces);
         const std::vector<Lining> linings = find_linings(garment, numbers, m_skin);
@@ -430,7 +423,7 @@ GarmentImport import_garment(const TriMesh& mesh, const TriMesh& skin,
                              const GarmentImportSettings& settings) {
     settings.check();
     check_vertices(settings.garment_name, mesh);
-    check_skin(settings.skin_name, skin);
+    validate_skin(settings.skin_name, skin);
     return Importer(skin, settings).run(mesh);
 }
 

@@ -31,7 +31,7 @@ constexpr const char* channel_names[] = {"Xposition", "Yposition", "Zposition",
 /// The lines of a file, split into words; knows where it is for error messages.
 class LineReader {
  public:
-    explicit LineReader(const std::string& path) : m_path(path), m_stream(read_file(path)) {}
+    explicit LineReader(const std::string& path) : m_path(path), m_stream(read_text_file(path)) {}
 
     /// Words of the next line that is not blank; false at the end of the file.
     bool next(std::vector<std::string>& words) {
@@ -188,6 +188,17 @@ double parse_frame_time(LineReader& reader) {
     return time;
 }
 
+/// One row beyond the announced number is left alone: Boxing_Toes has one, as have other files.
+/// More of them are a motion of which most would be missing.
+void refuse_more_rows(LineReader& reader, int frame_count) {
+    int more = 0;
+    for (std::vector<std::string> words; reader.next(words);) ++more;
+    if (more > 1)
+        reader.fail("the file has " + std::to_string(frame_count + more) + " rows for " +
+                        std::to_string(frame_count) + " frames",
+                    "write the number of rows after 'Frames:', or remove those beyond it");
+}
+
 /// Channels apply from the left: R = R_first R_second R_third, acting on column vectors.
 void apply_channel(Channel channel, double value, Vec3& position, Eigen::Quaterniond& rotation) {
     const int index = static_cast<int>(channel);
@@ -305,7 +316,6 @@ Motion load_bvh(const std::string& path, const BvhSettings& settings) {
 
     const int frame_count = parse_frame_count(reader);
     motion.frame_time = parse_frame_time(reader);
-    // Rows beyond the announced number are left alone: Boxing_Toes has one, as have other files.
     while (motion.frame_count() < frame_count) {
         if (!reader.next(words))
             reader.fail("the file ends after " + std::to_string(motion.frame_count()) + " of " +
@@ -313,6 +323,7 @@ Motion load_bvh(const std::string& path, const BvhSettings& settings) {
                         LineReader::truncated);
         motion.frames.push_back(parse_frame(reader, tree, words, scale));
     }
+    refuse_more_rows(reader, frame_count);
     drop_calibration(motion, settings.first_frame);
     return motion;
 }

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "data/core/errors.h"
-#include "data/files/mesh_file_check.h"
+#include "data/files/import_scene.h"
 
 namespace cloth {
 
@@ -60,8 +60,7 @@ class CharacterReader {
     }
 
     const aiScene& open(Assimp::Importer& importer) const {
-        check_mesh_file(m_path);
-        const aiScene* scene = importer.ReadFile(m_path, aiProcess_Triangulate);
+        const aiScene* scene = import_scene(importer, m_path, aiProcess_Triangulate);
         if (!scene || !scene->mRootNode)
             fail("", std::string("cannot be read: ") + importer.GetErrorString(),
                  "export it again; it may be damaged");
@@ -101,6 +100,8 @@ class CharacterReader {
     }
 
     void add_animation(const aiAnimation& animation) {
+        m_rig.unread_morphs = animation.mNumMorphMeshChannels > 0;
+        if (animation.mNumChannels == 0) return;  // it has a duration, and moves nothing
         // Files may leave the unit out; assimp's documentation names 25 as the convention then.
         const double ticks = animation.mTicksPerSecond > 0.0 ? animation.mTicksPerSecond : 25.0;
         for (unsigned c = 0; c < animation.mNumChannels; ++c) {

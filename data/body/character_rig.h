@@ -39,7 +39,8 @@ struct CharacterRig {
     SkinWeights weights;
     Points rest;  ///< |V| x 3: in the frames of the meshes
     Faces faces;
-    double duration = 0.0;  ///< (s)
+    double duration = 0.0;       ///< (s); 0: no joint has a track
+    bool unread_morphs = false;  ///< the animation changes morph targets, which are not read
 };
 
 /// Reads a rig with assimp. Vertices at exactly the same position of a mesh become one; vertices

@@ -20,6 +20,7 @@ constexpr double degree = M_PI / 180.0;
 struct Figure {
     std::map<std::string, std::string> names;  ///< body joint -> figure joint; "" if it has none
     std::map<std::string, double> tilts;       ///< forward tilt in upright walking (degrees)
+    std::string scheme;                        ///< of its names, for messages
 };
 
 /// The CMU skeleton. Tilts: mean world rotation about the lateral axis, relative to the heading,
@@ -35,11 +36,13 @@ Figure cmu_figure() {
              {"RightShoulder", 3.5},
              {"Neck", -8.0},
              {"Neck1", 11.0},
-             {"Head", 19.0}}};
+             {"Head", 19.0}},
+            "the CMU skeleton (Hips, LeftUpLeg, LeftLeg, ...)"};
 }
 
 Figure hip_knee_figure() {
     Figure figure;
+    figure.scheme = "Boxing_Toes (Hips, LeftHip, LeftKnee, ...)";
     figure.names = {{"LowerBack", "Ab"}, {"Spine", ""}, {"Spine1", "Chest"}, {"Neck1", ""}};
     for (const std::string side : {"Left", "Right"}) {
         figure.names[side + "UpLeg"] = side + "Hip";
@@ -77,18 +80,25 @@ struct Match {
 };
 
 Match find_figure(const Body& body, const Motion& motion) {
-    std::vector<std::string> fewest;
+    std::vector<std::string> nearest;  // lacks of the scheme of which most is there
+    std::string scheme;
+    size_t most = 0;
     for (const Figure& figure : {cmu_figure(), hip_knee_figure()}) {
         std::vector<std::string> missing;
         JointMatches joints = match(body, motion.skeleton, figure, missing);
         if (missing.empty()) return {figure, std::move(joints)};
-        if (fewest.empty() || missing.size() < fewest.size()) fewest = missing;
+        const auto there = static_cast<size_t>(std::count_if(
+            joints.begin(), joints.end(), [](const auto& joint) { return joint.has_value(); }));
+        if (!scheme.empty() && there <= most) continue;
+        nearest = missing;
+        scheme = figure.scheme;
+        most = there;
     }
     std::string list;
-    for (const std::string& name : fewest) list += " " + name;
+    for (const std::string& name : nearest) list += " " + name;
     throw LoadError(motion.source.empty() ? motion.name : motion.source, "joint names",
                     "the skeleton is unknown; it lacks the joints" + list,
-                    "rename the joints as in the CMU skeleton (Hips, LeftUpLeg, LeftLeg, ...)");
+                    "rename the joints as in " + scheme);
 }
 
 /// Rest directions of the figure's limbs: from a joint to the joint of the next limb.

@@ -27,6 +27,8 @@ class WeldedCharacter : public MovingSurface {
         return m_character.skin_matrices(time);
     }
     double height() const;  ///< of that pose (m)
+    /// Whether its animation changes morph targets, which are not read.
+    bool has_unread_morphs() const { return m_character.rig().unread_morphs; }
 
     std::shared_ptr<const Faces> faces() const override { return m_faces; }
     Points vertices(double time) const override;

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
+
+#include "data/core/errors.h"
 
 namespace cloth {
 
@@ -102,6 +105,16 @@ double signed_volume(const TriMesh& mesh) {
         volume += a.dot(b.cross(c)) / 6.0;
     }
     return volume;
+}
+
+void validate_skin(const std::string& name, const TriMesh& skin) {
+    validate_mesh(name, skin);
+    const Eigen::RowVector3d low = skin.vertices.colwise().minCoeff(),
+                             high = skin.vertices.colwise().maxCoeff();
+    // The volume of a flat strip is rounding, of either sign.
+    if (signed_volume(skin) < -1e-12 * std::pow((high - low).norm(), 3))
+        throw ArgumentError(name, "it is inside out: its faces look inwards",
+                            "turn its faces (flip normals) in a mesh editor");
 }
 
 }  // namespace cloth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,5 +31,9 @@ double border_share(const Faces& faces);
 /// theorem, a tetrahedron for each face.) Of an open surface it is that of the cones from the mean
 /// of its vertices.
 double signed_volume(const TriMesh& mesh);
+
+/// @throws ArgumentError naming `name` unless cloth can be kept off this surface: where
+///         validate_mesh() does, and if its faces look inwards, which puts outside in
+void validate_skin(const std::string& name, const TriMesh& skin);
 
 }  // namespace cloth

@@ -38,6 +38,12 @@ EdgeSides edge_sides(const Faces& faces) {
     return sides;
 }
 
+std::array<int, 3> sorted_corners(const Faces& faces, Eigen::Index f) {
+    std::array<int, 3> corners{faces(f, 0), faces(f, 1), faces(f, 2)};
+    std::sort(corners.begin(), corners.end());
+    return corners;
+}
+
 bool has_area(const TriMesh& mesh, Eigen::Index f) {
     double longest = 0.0;
     for (int c = 0; c < 3; ++c)
@@ -46,25 +52,6 @@ bool has_area(const TriMesh& mesh, Eigen::Index f) {
                                         .norm());
     const double area = face_area_vectors(mesh.vertices, mesh.faces.row(f)).rowwise().norm()[0];
     return area > smallest_area && 2.0 * area > smallest_height * longest * longest;
-}
-
-void leave_out_useless_faces(RepairedMesh& result) {
-    TriMesh& mesh = result.mesh;
-    std::set<std::array<int, 3>> known;
-    std::vector<char> keep(static_cast<size_t>(mesh.faces.rows()), 1);
-    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
-        std::array<int, 3> corners{mesh.faces(f, 0), mesh.faces(f, 1), mesh.faces(f, 2)};
-        std::sort(corners.begin(), corners.end());
-        const bool flat = !has_area(mesh, f);
-        const bool again = !flat && !known.insert(corners).second;
-        result.faces_without_area += flat;
-        result.duplicate_faces += again;
-        keep[static_cast<size_t>(f)] = !flat && !again;
-    }
-    mesh = keep_faces(mesh, keep);
-    if (mesh.faces.rows() == 0)
-        throw ArgumentError("garment", "it has no face with an area",
-                            "export the mesh again as triangles or polygons");
 }
 
 /// Away from the edge, within the face, and perpendicular to the edge: unit length.
@@ -77,6 +64,61 @@ Vec3 wing(const TriMesh& mesh, const Edge& edge, int face) {
             tip = mesh.vertices.row(mesh.faces(face, c));
     const Vec3 out = tip - a;
     return (out - out.dot(along) * along).normalized();
+}
+
+/// Of a square that is there from both sides, and that was cut along one diagonal on one side and
+/// along the other one on the other, the two triangles that come later.
+void leave_out_other_diagonals(const TriMesh& mesh, std::vector<char>& keep, int& left_out) {
+    constexpr double flat = -0.5;  // cosine between the triangles: above it is no square
+    std::map<std::array<int, 3>, int> numbers;
+    std::map<Edge, std::vector<int>> beside;
+    for (int f = 0; f < mesh.faces.rows(); ++f) {
+        if (!keep[static_cast<size_t>(f)]) continue;
+        numbers[sorted_corners(mesh.faces, f)] = f;
+        for (int c = 0; c < 3; ++c) {
+            const int a = mesh.faces(f, c), b = mesh.faces(f, (c + 1) % 3);
+            beside[{std::min(a, b), std::max(a, b)}].push_back(f);
+        }
+    }
+    const auto other_corner = [&](int face, const Edge& edge) {
+        return mesh.faces.row(face).sum() - edge[0] - edge[1];
+    };
+    const auto kept_face = [&](std::array<int, 3> corners) {
+        std::sort(corners.begin(), corners.end());
+        const auto at = numbers.find(corners);
+        return at != numbers.end() && keep[static_cast<size_t>(at->second)] ? at->second : -1;
+    };
+    for (const auto& [edge, faces] : beside)
+        for (size_t i = 0; i < faces.size(); ++i)
+            for (size_t j = i + 1; j < faces.size(); ++j) {
+                const int first = faces[i], second = faces[j];
+                if (!keep[static_cast<size_t>(first)] || !keep[static_cast<size_t>(second)])
+                    continue;
+                const int b = other_corner(first, edge), d = other_corner(second, edge);
+                const int third = kept_face({edge[0], b, d}), fourth = kept_face({edge[1], b, d});
+                if (third < 0 || fourth < 0 || first > std::min(third, fourth)) continue;
+                if (wing(mesh, edge, first).dot(wing(mesh, edge, second)) > flat) continue;
+                keep[static_cast<size_t>(third)] = keep[static_cast<size_t>(fourth)] = 0;
+                left_out += 2;
+            }
+}
+
+void leave_out_useless_faces(RepairedMesh& result, const std::string& name) {
+    TriMesh& mesh = result.mesh;
+    std::set<std::array<int, 3>> known;
+    std::vector<char> keep(static_cast<size_t>(mesh.faces.rows()), 1);
+    for (Eigen::Index f = 0; f < mesh.faces.rows(); ++f) {
+        const bool flat = !has_area(mesh, f);
+        const bool again = !flat && !known.insert(sorted_corners(mesh.faces, f)).second;
+        result.faces_without_area += flat;
+        result.duplicate_faces += again;
+        keep[static_cast<size_t>(f)] = !flat && !again;
+    }
+    leave_out_other_diagonals(mesh, keep, result.duplicate_faces);
+    mesh = keep_faces(mesh, keep);
+    if (mesh.faces.rows() == 0)
+        throw ArgumentError(name, "it has no face with an area",
+                            "export the mesh again as triangles or polygons");
 }
 
 /// Of three and more faces at an edge the two that continue each other best.
@@ -219,13 +261,13 @@ void agree_on_outside(RepairedMesh& result, const std::vector<Link>& links) {
     }
 }
 
-void check_edges(const TriMesh& mesh) {
+void check_edges(const TriMesh& mesh, const std::string& name) {
     for (const auto& [edge, sides] : edge_sides(mesh.faces)) {
         if (sides.size() <= 2) continue;
         const Vec3 at = 0.5 * (mesh.vertices.row(edge[0]) + mesh.vertices.row(edge[1]));
         char place[96];
         std::snprintf(place, sizeof place, "(%.4g, %.4g, %.4g)", at.x(), at.y(), at.z());
-        throw ArgumentError("garment",
+        throw ArgumentError(name,
                             "the edge at " + std::string(place) + " has " +
                                 std::to_string(sides.size()) +
                                 " faces, and cutting does not part them",
@@ -235,14 +277,14 @@ void check_edges(const TriMesh& mesh) {
 
 }  // namespace
 
-RepairedMesh repair_mesh(const TriMesh& mesh) {
+RepairedMesh repair_mesh(const TriMesh& mesh, const std::string& name) {
     RepairedMesh result;
     result.mesh = mesh;
-    leave_out_useless_faces(result);
+    leave_out_useless_faces(result, name);
     const std::vector<Link> links = links_of(result.mesh, result.cut_edges);
     split_vertices(result, links);
     agree_on_outside(result, links);
-    check_edges(result.mesh);
+    check_edges(result.mesh, name);
     return result;
 }
 

@@ -21,4 +21,11 @@ std::string read_file(const std::string& path) {
     return bytes;
 }
 
+std::string read_text_file(const std::string& path) {
+    static const std::string mark = "\xEF\xBB\xBF";
+    std::string text = read_file(path);
+    if (text.compare(0, mark.size(), mark) == 0) text.erase(0, mark.size());
+    return text;
+}
+
 }  // namespace cloth

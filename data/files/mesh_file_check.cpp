@@ -160,6 +160,8 @@ void check_archive(const std::string& path) {
 
 void check_mesh_file(const std::string& path) {
     std::error_code error;
+    if (fs::is_directory(path, error))
+        throw LoadError(path, "", "is a folder", "give the path of a file");
     if (!fs::is_regular_file(path, error))
         throw LoadError(path, "", "there is no such file", "check the path");
     if (fs::file_size(path, error) == 0)

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "data/core/errors.h"
-#include "data/files/mesh_file_check.h"
+#include "data/files/import_scene.h"
 #include "data/files/vertex_order.h"
 #include "data/files/vertex_paint.h"
 
@@ -69,8 +69,7 @@ void check_faces(const std::string& path, const aiMesh& mesh) {
 }
 
 const aiScene& read_scene(const std::string& path, Assimp::Importer& importer) {
-    check_mesh_file(path);
-    const aiScene* scene = importer.ReadFile(path, aiProcess_ValidateDataStructure);
+    const aiScene* scene = import_scene(importer, path, aiProcess_ValidateDataStructure);
     if (!scene)
         throw LoadError(path, "", std::string("cannot be read: ") + importer.GetErrorString(),
                         "give a whole OBJ, PLY, glTF or COLLADA file; export it again if this one "
@@ -205,6 +204,15 @@ bool same_geometry(const Placement& a, const Placement& b) {
 }
 
 }  // namespace
+
+std::vector<std::string> mesh_names(const std::string& path) {
+    Assimp::Importer importer;
+    const aiScene& scene = read_scene(path, importer);
+    std::set<std::string> names;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) names.insert(scene.mMeshes[i]->mName.C_Str());
+    names.erase("");
+    return {names.begin(), names.end()};
+}
 
 TriMesh load_mesh(const std::string& path, const std::string& mesh_name,
                   FacesWithoutArea without_area) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "data/core/mesh.h"
 
@@ -26,6 +27,10 @@ enum class FacesWithoutArea {
 ///         vertex that is not finite, a face without area or an index that is out of range
 TriMesh load_mesh(const std::string& path, const std::string& mesh_name = "",
                   FacesWithoutArea without_area = FacesWithoutArea::refuse);
+
+/// The names of the meshes in a file, in alphabetical order; those without a name are left out.
+/// @throws LoadError if the file is missing, or cannot be read
+std::vector<std::string> mesh_names(const std::string& path);
 
 /// Writes an OBJ that load_mesh() reads back bit by bit. The file appears whole or not at all: it
 /// is written under a temporary name and renamed.

@@ -242,7 +242,7 @@ std::string place_in_collada(const std::string& text, const std::string& geometr
 
 std::map<std::string, FilePositions> read_file_positions(const std::string& path) {
     const std::string extension = extension_of(path);
-    if (extension == "obj") return {{"", obj_positions(read_file(path))}};
+    if (extension == "obj") return {{"", obj_positions(read_text_file(path))}};
     if (extension == "dae") return collada_positions(read_file(path));
     if (extension == "zae") return collada_positions(read_zipped_dae(path));
     return {};
@@ -251,7 +251,7 @@ std::map<std::string, FilePositions> read_file_positions(const std::string& path
 std::string place_of_bad_position(const std::string& path, const std::string& mesh,
                                   const std::array<float, 3>& position) {
     const std::string extension = extension_of(path);
-    if (extension == "obj") return place_in_obj(read_file(path), position);
+    if (extension == "obj") return place_in_obj(read_text_file(path), position);
     if (extension == "dae") return place_in_collada(read_file(path), mesh, position);
     if (extension == "zae") return place_in_collada(read_zipped_dae(path), mesh, position);
     return "";

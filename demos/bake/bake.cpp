@@ -7,6 +7,7 @@
 #include "data/files/cache_format.h"
 #include "data/files/mesh_io.h"
 #include "demos/compare/arguments.h"
+#include "demos/dressing_checks.h"
 
 namespace cloth {
 
@@ -27,6 +28,10 @@ void check_resume(const BakeOptions& options) {
 }
 
 }  // namespace
+
+std::vector<std::string> cache_files(const std::string& cache) {
+    return {cache, unfinished_cache(cache), rest_file(cache)};
+}
 
 std::string rest_file(const std::string& cache) {
     fs::path path = fs::path(cache).lexically_normal();
@@ -79,6 +84,11 @@ bool bake(const BakeScene& scene, Stepper& stepper, std::vector<BakedMesh>& mesh
         if (is_lost) watch.lost(frame + 1, problem);
     }
     for (BakedMesh& mesh : meshes) mesh.cache->finish();
+    if (!is_lost && watch.lost) {
+        const TriMesh skin{scene.skin((frames - 1) * dt), scene.body.faces};
+        const std::string problem = worn_problem(worn_state(scene.cloth->garment(), state.x, skin));
+        if (!problem.empty()) watch.lost(frames - 1, problem);
+    }
     return true;
 }
 

@@ -26,11 +26,15 @@ std::vector<BakedMesh> open_caches(const BakeScene& scene, const BakeOptions& op
 /// NAME_rest.obj of NAME.pc2, or of the folder NAME.
 std::string rest_file(const std::string& cache);
 
+/// All that is written for a cache: itself, what it is called until it is whole, and rest_file().
+std::vector<std::string> cache_files(const std::string& cache);
+
 /// What a run needs to know of its surroundings.
 struct BakeWatch {
     std::function<void(int done, int all, const std::string& what)> progress;
     std::function<bool()> interrupted;  ///< asked before each step
-    /// Told once, when the scene says that the garment is lost; may be null.
+    /// Told once, when the scene says that the garment is lost, or at the end worn_problem() does;
+    /// may be null.
     std::function<void(int frame, const std::string& problem)> lost = nullptr;
 };
 

@@ -7,6 +7,7 @@
 
 #include "data/body/outfit.h"
 #include "data/core/check_range.h"
+#include "data/core/errors.h"
 #include "data/core/garment_pieces.h"
 #include "data/files/garment_assets.h"
 #include "demos/compare/body_scene.h"
@@ -40,6 +41,18 @@ std::vector<std::string> notes_of(const PaintedMesh& painted, const GoalLimits& 
                     count(limits.backstop.array() < infinity) + " a backstop, " +
                     count(limits.drive_stiffness.array() > 0.0) + " a drive");
     return notes;
+}
+
+/// Colours that were asked for and are nowhere would hold nothing.
+void check_colours(const CharacterSceneSettings& settings, const std::vector<Garment>& garments) {
+    const bool painted = std::any_of(garments.begin(), garments.end(), [](const Garment& garment) {
+        return !garment.goal_limits().empty();
+    });
+    if (settings.goal_colours && !painted)
+        throw ArgumentError(settings.garment,
+                            "it has no vertex colours, which --goal-colours asks for",
+                            "paint them and export them with the mesh, or leave --goal-colours "
+                            "out");
 }
 
 /// What the user is told of clothes that were not made for this character.
@@ -89,6 +102,7 @@ CharacterScene::WornGarments CharacterScene::read_garments(const CharacterSceneS
         notes.insert(notes.end(), read.notes.begin(), read.notes.end());
         note_wardrobe(file, notes);
     }
+    check_colours(settings, garments);
     MergedGarments merged = merge_garments(settings.garment, garments);
     const Points& rest = merged.garment.rest().vertices;
     Garment garment = merged.garment.with_pins(vertices_between(rest, settings.pin));
@@ -131,6 +145,8 @@ CharacterScene::CharacterScene(const CharacterSceneSettings& settings,
                                                  m_start.x(garment().pins(), Eigen::all));
     m_slip = std::make_unique<const SlipCheck>(
         garment(), m_start.x, TriMesh{m_skin->vertices(0.0), *m_skin->faces()}, m_skin->height());
+    for (const std::string& note : character_notes(settings.character, *m_skin))
+        m_notes.push_back(note);
     int available = m_skin->frame_count(frame_time()) - 1;
     if (available < 1) {
         available = settings.steps == 0 ? 3 * settings.rate - 1 : settings.steps;

@@ -48,8 +48,10 @@ void run(const BakeOptions& options) {
         bake(scene, *stepper, meshes,
              {[&line](int done, int all, const std::string& what) { line.update(done, all, what); },
               [] { return interrupted != 0; },
-              [&problem](int frame, const std::string& what) {
+              [&](int frame, const std::string& what) {
+                  const bool is_last = frame + 1 == scene.frames();
                   problem = (frame < 0 ? "before the first frame"
+                             : is_last ? "in the last frame"
                                        : "from frame " + std::to_string(frame) + " on") +
                             std::string(": ") + what;
               }});

@@ -1,12 +1,19 @@
 #include "demos/bake/options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
+#include "data/body/outfit.h"
 #include "data/files/cache_format.h"
+#include "demos/bake/bake.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/command_line.h"
+#include "demos/dressing_checks.h"
 
 namespace cloth {
+
+namespace fs = std::filesystem;
+
 namespace {
 
 void add_cache(CLI::App& app, BakeOptions& options) {
@@ -23,13 +30,48 @@ void add_cache(CLI::App& app, BakeOptions& options) {
                  "go on with a run that was interrupted; give the same options");
 }
 
+/// One path for a file, whatever way it is named.
+fs::path normalised(const std::string& path) {
+    std::error_code error;
+    fs::path one = fs::weakly_canonical(fs::absolute(path), error);
+    if (error) one = fs::absolute(path).lexically_normal();
+    return one.has_filename() ? one : one.parent_path();
+}
+
+/// Neither cache may be written over the other one, nor over its mesh.
+void check_caches_differ(const BakeOptions& options) {
+    if (normalised(options.out) == normalised(options.body))
+        throw UsageError("--body " + options.body + ": give another file than --out");
+    for (const std::string& file : cache_files(options.body))
+        for (const std::string& other : cache_files(options.out))
+            if (normalised(file) == normalised(other))
+                throw UsageError("--body " + options.body + ": " + file +
+                                 " would be written for --out " + options.out +
+                                 ", too; give a file of another name");
+}
+
+/// What is read stays as it is.
+void check_inputs_stay(const BakeOptions& options) {
+    std::vector<std::string> inputs = outfit_parts(options.garment);
+    inputs.push_back(options.character.character);
+    inputs.push_back(options.motion);
+    check_not_overwritten("--out " + options.out, cache_files(options.out), inputs,
+                          "give a file of another name");
+    if (!options.body.empty())
+        check_not_overwritten("--body " + options.body, cache_files(options.body), inputs,
+                              "give a file of another name");
+}
+
 void check(BakeOptions& options) {
     if (options.out.empty()) throw UsageError("--out: name a file; see --help");
     if (options.frames == 1) throw UsageError("--frames: give 0 or at least 2");
-    if (options.out == options.body) throw UsageError("--body: give another file than --out");
     cache_format(options.out);
-    if (!options.body.empty()) cache_format(options.body);
+    if (!options.body.empty()) {
+        cache_format(options.body);
+        check_caches_differ(options);
+    }
     finish_scene(options);
+    check_inputs_stay(options);
 }
 
 }  // namespace

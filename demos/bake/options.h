@@ -15,7 +15,7 @@ struct BakeOptions : SceneOptions {
 };
 
 /// @throws UsageError naming the option; HelpText if it is asked for; ArgumentError for an unknown
-///         ending of a cache
+///         ending of a cache, or if a file that is read would be overwritten
 BakeOptions parse_bake_options(const std::vector<std::string>& arguments);
 
 }  // namespace cloth

@@ -2,11 +2,26 @@
 
 #include <CLI/CLI.hpp>
 
+#include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
 #include "demos/compare/command_line.h"
 
 namespace cloth {
 namespace {
+
+/// What says nothing of the project's body must not be left out in silence.
+void refuse_without_character(CLI::App& app, const SceneOptions& options,
+                              const std::vector<std::string>& names) {
+    app.parse_complete_callback([&app, &options, names] {
+        if (!options.character.character.empty()) return;
+        for (const std::string& name : names)
+            if (app.count(name) > 0)
+                throw UsageError(name +
+                                 ": it is for a --character and its garment; give one, or "
+                                 "leave " +
+                                 name + " out");
+    });
+}
 
 /// As those of hello_character.
 void add_character(CLI::App& app, SceneOptions& options) {
@@ -32,6 +47,9 @@ void add_character(CLI::App& app, SceneOptions& options) {
                    "in attributes of its file are always read")
         ->type_name("M");
     app.add_option("--settle", character.settle, "its first pose is held for so long (s)");
+    refuse_without_character(app, options,
+                             {"--skin", "--character-scale", "--garment-scale", "--weld",
+                              "--clearance", "--pin", "--goal-colours", "--settle"});
 }
 
 }  // namespace
@@ -46,18 +64,16 @@ void add_scene(CLI::App& app, SceneOptions& options) {
         ->check(CLI::IsMember({"soft", "real"}).description(""))
         ->type_name("soft|real");
     app.add_option("--solver", options.solver,
-                   "quasi-newton (default), small, xpbd-40, reference and the others that\n"
+                   "default (the library's), small, xpbd-40, reference and the others that\n"
                    "compare --help names")
         ->type_name("NAME");
     add_whole_number(app, "--rate", options.rate, 10, 240,
-                     "frames per second, and steps (default 30, which networks need)");
+                     "frames per second, and steps (default 30, for which most networks\nare)");
     add_character(app, options);
 }
 
 void finish_scene(SceneOptions& options) {
     if (options.character.character.empty()) {
-        if (options.goal_colours != 0.0)
-            throw UsageError("--goal-colours: it is for the garment of a --character");
         if (options.motion.empty()) options.motion = "01_01";
         return check_garment_name(options.garment);
     }
@@ -65,9 +81,9 @@ void finish_scene(SceneOptions& options) {
     if (!character.pin.empty() && character.pin.size() != 2)
         throw UsageError("--pin: give the lowest and the highest height");
     character.garment = options.garment;
-    if (options.goal_colours != 0.0) {
+    if (options.goal_colours) {
         character.goal_colours.emplace();
-        character.goal_colours->max_distance = options.goal_colours;
+        character.goal_colours->max_distance = *options.goal_colours;
         character.goal_colours->check();
     }
     character.skin.animation = options.motion;

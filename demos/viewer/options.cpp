@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "data/files/vertex_order.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_named.h"
 #include "demos/compare/command_line.h"
@@ -38,7 +39,7 @@ ViewerOptions parse_viewer_options(const std::vector<std::string>& arguments) {
                  "viewer");
     set_up(app);
     add_scene(app, options.scene);
-    add_body(app, options.scene.shape);
+    add_body(app, options.scene.shape)->excludes(app.get_option("--character"));
     add_start(app, options);
     add_window(app, options);
     app.footer(
@@ -48,6 +49,9 @@ ViewerOptions parse_viewer_options(const std::vector<std::string>& arguments) {
     parse(app, arguments);
     finish_scene(options.scene);
     body_shape_named(options.scene.shape);
+    if (!options.screenshot.empty() && extension_of(options.screenshot) != "png")
+        throw UsageError("--screenshot " + options.screenshot +
+                         ": it is written as PNG; give a name that ends with .png");
     if (options.paused && options.frames > 0)
         throw UsageError("--frames: leave out --paused, or there will be no steps to count");
     return options;

@@ -212,6 +212,13 @@ TEST(AnimatedBody, AnUnknownSkeletonNamesTheMissingJoints) {
     motion.skeleton.names[motion.skeleton.find("LeftLeg").value()] = "Bein";
     expect_load_error([&] { AnimatedBody(default_body(), motion); }, "01_01.bvh",
                       "lacks the joints LeftLeg");
+    for (std::string& name : motion.skeleton.names) name = "mixamorig:" + name;
+    expect_load_error([&] { AnimatedBody(default_body(), motion); }, "lacks the joints Hips",
+                      "as in the CMU skeleton (Hips, LeftUpLeg,");
+    motion = load_motion_by_name("Boxing_Toes");
+    motion.skeleton.names[motion.skeleton.find("LeftKnee").value()] = "Knie";
+    expect_load_error([&] { AnimatedBody(default_body(), motion); }, "lacks the joints LeftKnee.",
+                      "as in Boxing_Toes (Hips, LeftHip, LeftKnee,");
     motion = jumps();
     motion.skeleton.offsets.setZero();
     expect_load_error([&] { AnimatedBody(default_body(), motion); }, "01_01.bvh",

@@ -130,6 +130,7 @@ TEST_F(MotionFile, BrokenFilesNameLineAndRemedy) {
         {whole.substr(0, whole.find("JOINT")), "line 6: the file ends where"},
         {whole.substr(0, whole.find("Frame Time")), "the file ends where 'Frame Time: s'"},
         {with_frames(row, 2), "line 19: the file ends after 1 of 2 frames"},
+        {with_frames(row + row + row + "\n" + row, 2), "line 23: the file has 4 rows for 2 frames"},
         {with_frames(row + "0 0 0 0 nan 0 0 0 0\n", 2), "line 20: 'nan' is not a finite number"},
         {with_frames(row + "0 0 0 0 1e999 0 0 0 0\n", 2), "line 20: '1e999' is not a finite"},
         {with_frames("0 0 0 0 0 0 0 0\n", 1), "line 19: the row has 8 values for 9 channels"},
@@ -151,6 +152,18 @@ TEST_F(MotionFile, BrokenFilesNameLineAndRemedy) {
     }
     expect_load_error([&] { load_bvh(path("none.bvh")); }, "none.bvh", "cannot be opened");
     expect_load_error([&] { load_bvh(path("")); }, path(""), "is a folder");
+}
+
+// Boxing_Toes has one, too.
+TEST_F(MotionFile, OneRowTooManyIsLeftAlone) {
+    const std::string row = "0 0 0 0 0 0 0 0 0\n";
+    EXPECT_EQ(load_bvh(write("a.bvh", with_frames(row + row + row, 2))).frame_count(), 2);
+}
+
+TEST_F(MotionFile, AByteOrderMarkIsNoPartOfIt) {
+    const std::string text = with_frames("1 2 3 10 20 30 40 50 60\n", 1);
+    EXPECT_EQ(load_bvh(write("a.bvh", "\xEF\xBB\xBF" + text)).skeleton.names,
+              load_bvh(write("b.bvh", text)).skeleton.names);
 }
 
 TEST(Motions, AgreeWithAssimp) {

@@ -8,6 +8,7 @@
 #include "data/core/mesh.h"
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
+#include "tests/data/files/sample_motion.h"
 #include "tests/ranges.h"
 
 namespace cloth::skinned_character_test {
@@ -156,6 +157,23 @@ TEST(SkinnedCharacter, WithoutAnAnimationItStandsInThePoseOfTheFile) {
         EXPECT_LT((matrix.leftCols<3>() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
         EXPECT_LT(matrix.col(3).norm(), 1e-6);
     }
+}
+
+// A cache of two frames is such a file.
+TEST_F(CharacterFile, AnAnimationOfMorphTargetsAloneMovesNothingAndIsSaid) {
+    write_cache(path("morphs.glb"), 2, 1.0);
+    const WeldedCharacter character(path("morphs.glb"), {}, 1e-4);
+    EXPECT_TRUE(character.has_unread_morphs());
+    EXPECT_EQ(character.duration(), 0.0) << "it would be announced";
+    EXPECT_EQ(character.vertices(1.0), character.rest().vertices);
+    EXPECT_FALSE(WeldedCharacter(model_path("X/BCN_Epileptic.X"), {}, 1e-4).has_unread_morphs());
+}
+
+TEST_F(CharacterFile, AByteOrderMarkOfAnObjFileCostsNoVertex) {
+    const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const SkinnedCharacter character(write("marked.obj", "\xEF\xBB\xBF" + text));
+    EXPECT_EQ(character.faces()->rows(), 1);
+    EXPECT_EQ(character.vertices(0.0).rows(), 3);
 }
 
 TEST(WeldedCharacter, IsTheSkinWithoutItsSeamsInEveryPose) {

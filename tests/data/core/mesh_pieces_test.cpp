@@ -36,6 +36,24 @@ TEST(MeshPieces, AClosedSurfaceHasNoBorderAndTheVolumeOfItsBall) {
     EXPECT_NEAR(signed_volume(away), signed_volume(ball), 1e-9);
 }
 
+TEST(MeshPieces, ASkinWhoseFacesLookInwardsIsRefusedByName) {
+    const TriMesh ball = icosphere(2);
+    EXPECT_NO_THROW(validate_skin("ball", ball));
+    try {
+        validate_skin("ball", turned(ball));
+        FAIL() << "it was taken";
+    } catch (const ArgumentError& error) {
+        EXPECT_EQ(std::string(error.what()).find("ball: it is inside out"), 0u) << error.what();
+    }
+    TriMesh strip = square_mesh(4);
+    strip.vertices.rowwise() += Eigen::RowVector3d(0.1, 0.3, 0.7);
+    EXPECT_NO_THROW(validate_skin("strip", strip));
+    EXPECT_NO_THROW(validate_skin("strip", turned(strip)));
+    TriMesh twice{ball.vertices, Faces(2 * ball.faces.rows(), 3)};
+    twice.faces << ball.faces, ball.faces;
+    EXPECT_THROW(validate_skin("twice", twice), ArgumentError) << "as validate_mesh() does";
+}
+
 TEST(MeshPieces, TheBorderShareCountsEdges) {
     Faces square(2, 3);
     square << 0, 1, 2, 0, 2, 3;

@@ -51,6 +51,35 @@ TEST(MeshRepair, FacesWithoutAreaAndDuplicatesAreLeftOut) {
     EXPECT_EQ(repaired.mesh.faces, square().faces);
 }
 
+TEST(MeshRepair, SquaresFromBothSidesAreOneHoweverTheyWereCut) {
+    // A strip of squares with both sides, of which the second is cut along the other diagonals.
+    constexpr int squares = 5;
+    TriMesh mesh{Points(2 * squares + 2, 3), Faces(4 * squares, 3)};
+    for (int k = 0; k <= squares; ++k) {
+        mesh.vertices.row(2 * k) << k, 0, 0;
+        mesh.vertices.row(2 * k + 1) << k, 1, 0.1 * (k % 2);
+    }
+    for (int k = 0; k < squares; ++k) {
+        const int a = 2 * k, b = a + 2, c = a + 3, d = a + 1;
+        mesh.faces.row(2 * k) << a, b, c;
+        mesh.faces.row(2 * k + 1) << a, c, d;
+        mesh.faces.row(2 * squares + 2 * k) << d, b, a;
+        mesh.faces.row(2 * squares + 2 * k + 1) << d, c, b;
+    }
+    const RepairedMesh repaired = repair_mesh(mesh);
+    EXPECT_EQ(repaired.duplicate_faces, 2 * squares);
+    EXPECT_EQ(repaired.mesh.faces, Faces(mesh.faces.topRows(2 * squares)));
+    EXPECT_EQ(repaired.cut_edges, 0);
+    EXPECT_EQ(repaired.turned_faces, 0);
+}
+
+TEST(MeshRepair, ATetrahedronIsNoSquare) {
+    TriMesh mesh{Points(4, 3), Faces(4, 3)};
+    mesh.vertices << 1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1;
+    mesh.faces << 0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2;
+    EXPECT_EQ(repair_mesh(mesh).duplicate_faces, 0);
+}
+
 TEST(MeshRepair, ThePairThatGoesOnStraightStaysTogether) {
     const RepairedMesh repaired = repair_mesh(with_fin(square(), 0, 2, {0.5, 0.5, 1.0}));
     EXPECT_EQ(repaired.cut_edges, 1);

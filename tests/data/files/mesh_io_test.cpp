@@ -178,6 +178,22 @@ TEST_F(MeshIo, MissingFileIsNamed) {
     expect_error(path("no.obj"), "there is no such file");
 }
 
+TEST_F(MeshIo, AFolderIsNoFile) {
+    expect_error(path(""), "is a folder");
+}
+
+TEST_F(MeshIo, AByteOrderMarkCostsNoVertex) {
+    // The first vertex is that of a line which assimp would not know.
+    const std::string text = "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 2 4 3\nf 1 2 3\n";
+    const TriMesh marked = load_mesh(write("marked.obj", "\xEF\xBB\xBF" + text));
+    const TriMesh plain = load_mesh(write("plain.obj", text));
+    ASSERT_EQ(marked.vertices.rows(), 4);
+    EXPECT_EQ(marked.vertices, plain.vertices) << "to the last bit, which assimp does not hand on";
+    EXPECT_EQ(marked.faces, plain.faces);
+    expect_error(write("nan.obj", "\xEF\xBB\xBFv nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                 "nan.obj, line 1: ");
+}
+
 TEST_F(MeshIo, EmptyFileIsRefused) {
     for (const char* name : {"e.obj", "e.ply", "e.dae", "e.zae", "e.gltf"})
         expect_error(write(name, ""), "empty");

@@ -62,6 +62,20 @@ class Failing : public Stepper {
     int m_steps = 0;
 };
 
+/// Pulls every other vertex aside, which keeps the garment about where it is.
+class Tearing : public Stepper {
+ public:
+    std::string name() const override { return "tearing"; }
+    StepReport step(const Boundary&, double, ClothState& state) override {
+        for (Eigen::Index i = 0; i < state.x.rows() && !m_torn; i += 2) state.x(i, 0) += 0.15;
+        m_torn = true;
+        return {};
+    }
+
+ private:
+    bool m_torn = false;
+};
+
 }  // namespace
 
 TEST_F(Bake, ACacheHoldsTheFramesThatTheSolverGives) {
@@ -160,6 +174,43 @@ TEST_F(Bake, ACharacterThatIsNoSurfaceIsRefusedByItsFile) {
     }
 }
 
+TEST_F(Bake, ACharacterThatIsInsideOutIsRefusedByItsFile) {
+    BakeOptions options;
+    TriMesh skin = Body::load_default().rest_mesh();
+    skin.faces.col(1).swap(skin.faces.col(2));
+    save_obj(path("statue.obj"), skin);
+    options.character.character = path("statue.obj");
+    options.character.garment = "tshirt_1000";
+    try {
+        make_bake_scene(options);
+        FAIL() << "it was taken";
+    } catch (const ArgumentError& error) {
+        EXPECT_EQ(std::string(error.what()).find(path("statue.obj") + ": it is inside out"), 0u)
+            << error.what();
+    }
+}
+
+// A cache of the project's body is a file whose animation is one of morph targets.
+TEST_F(Bake, MorphTargetsThatAreNotReadAreSaidWithTheFile) {
+    const TriMesh skin = Body::load_default().rest_mesh();
+    const auto cache = make_cache_writer(path("morphs.glb"), skin, {30.0, 2});
+    for (const double up : {0.0, 0.5}) {
+        Points x = skin.vertices;
+        x.col(1).array() += up;
+        cache->add(x);
+    }
+    cache->finish();
+    BakeOptions options;
+    options.character.character = path("morphs.glb");
+    options.character.garment = "tshirt_1000";
+    const BakeScene scene = make_bake_scene(options);
+    ASSERT_EQ(scene.notes.size(), 3u);
+    EXPECT_EQ(scene.notes[1].find(path("morphs.glb") + ": its animation changes morph targets"), 0u)
+        << scene.notes[1];
+    EXPECT_NE(scene.notes[2].find("does not move"), std::string::npos);
+    EXPECT_EQ(scene.frames(), 90);
+}
+
 // The project's body as a file of a mesh and nothing else.
 TEST_F(Bake, ACharacterThatDoesNotMoveStandsForAsManyFramesAsAreAskedFor) {
     BakeOptions options;
@@ -190,6 +241,27 @@ TEST_F(Bake, AGarmentThatFallsOffIsToldOnce) {
                       [&](int, const std::string& problem) { told.push_back(problem); }}));
     ASSERT_EQ(told.size(), 1u);
     EXPECT_NE(told[0].find("slid off: it is "), std::string::npos) << told[0];
+}
+
+TEST_F(Bake, AGarmentThatIsTornAtTheEndIsTold) {
+    const BakeOptions options = cape("xpbd-10");
+    const BakeScene scene = make_bake_scene(options);
+    const auto told = [&](Stepper& stepper) {
+        std::vector<BakedMesh> meshes = open_caches(scene, options);
+        std::vector<std::pair<int, std::string>> problems;
+        EXPECT_TRUE(bake(scene, stepper, meshes,
+                         {[](int, int, const std::string&) {}, [] { return false; },
+                          [&](int frame, const std::string& problem) {
+                              problems.emplace_back(frame, problem);
+                          }}));
+        return problems;
+    };
+    Tearing tearing;
+    const auto problems = told(tearing);
+    ASSERT_EQ(problems.size(), 1u);
+    EXPECT_EQ(problems[0].first, 5);
+    EXPECT_EQ(problems[0].second, "the garment is lost: it failed, fell off or was torn");
+    EXPECT_TRUE(told(*make_solver(options.solver, *scene.cloth, {})).empty()) << "it is worn";
 }
 
 TEST_F(Bake, FilesThatAreJoinedByPlusAreWornInLayers) {
@@ -311,6 +383,17 @@ TEST_F(Bake, ColoursAreReadAsGoalsIfAskedForAndNamedIfNot) {
     EXPECT_NEAR(limits.maxCoeff(), 0.15, 1e-6);
     EXPECT_EQ(limits.minCoeff(), 0.0);
     EXPECT_EQ(read.cloth->frame_boundary(0).goals.x1.rows(), limits.size());
+    options.character.garment = asset_path("garments/cape.obj");
+    try {
+        make_bake_scene(options);
+        FAIL() << "it has no colours";
+    } catch (const ArgumentError& error) {
+        EXPECT_NE(std::string(error.what()).find("cape.obj: it has no vertex colours"),
+                  std::string::npos)
+            << error.what();
+    }
+    options.character.garment += "+" + path("coloured.obj");
+    EXPECT_TRUE(make_bake_scene(options).cloth->garment().has_goals()) << "one of them has some";
 }
 
 TEST_F(Bake, AStepThatFailsEndsTheRunAndLeavesWhatIsThere) {

@@ -46,6 +46,12 @@ TEST(ViewerOptions, WhatCannotBeRightIsRefusedByName) {
     EXPECT_NE(refusal({"--wind", "50"}).find("--wind"), std::string::npos);
     EXPECT_NE(refusal({"--colours", "heat"}).find("--colours"), std::string::npos);
     EXPECT_NE(refusal({"--width", "10"}).find("--width"), std::string::npos);
+    EXPECT_NE(refusal({"--body", "heavy", "--character", "a.glb"}).find("--character"),
+              std::string::npos);
+    EXPECT_EQ(refusal({"--body", "heavy"}), "");
+    EXPECT_EQ(refusal({"--pin", "0.9", "1.1"}).find("--pin: it is for a --character"), 0u);
+    EXPECT_NE(refusal({"--screenshot", "x.jpg"}).find(".png"), std::string::npos);
+    EXPECT_EQ(refusal({"--screenshot", "x.PNG"}), "");
     EXPECT_NE(refusal({"--frames", "5", "--paused"}).find("--frames"), std::string::npos);
 }
 

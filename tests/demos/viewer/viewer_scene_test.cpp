@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
+#include "data/body/body.h"
+#include "data/core/errors.h"
 #include "data/core/paths.h"
+#include "data/files/mesh_io.h"
 #include "demos/compare/solver_factory.h"
 
 namespace cloth::viewer_scene_test {
@@ -329,6 +334,18 @@ TEST(ViewerScene, CharactersFromFilesAreWornToo) {
     advance(scene, controls, 2);
     EXPECT_TRUE(scene.frame().report.finite);
     EXPECT_EQ(scene.frame().refusal, "");
+}
+
+TEST(ViewerScene, ACharacterThatIsInsideOutIsRefused) {
+    const std::string file = testing::TempDir() + "viewer_inside_out.obj";
+    TriMesh skin = Body::load_default().rest_mesh();
+    skin.faces.col(1).swap(skin.faces.col(2));
+    save_obj(file, skin);
+    SceneOptions options;
+    options.character.character = file;
+    options.character.garment = "tshirt_1000";
+    EXPECT_THROW(ViewerScene scene(options), ArgumentError);
+    std::filesystem::remove(file);
 }
 
 }  // namespace cloth::viewer_scene_test
