@@ -87,10 +87,12 @@ Image montage(const std::vector<Image>& panels, const std::vector<std::string>& 
 
     const Font font;
     for (int i = 0; i < static_cast<int>(captions.size()); ++i) {
-        const TextSize size = font.measure(captions[i], settings.caption_height);
+        const int room = layout.panel_width - settings.caption_height / 2;
+        const std::string caption = font.shortened(captions[i], settings.caption_height, room);
+        const TextSize size = font.measure(caption, settings.caption_height);
         const int x = i % layout.columns * step_x + (layout.panel_width - size.width) / 2;
         const int y = i / layout.columns * step_y + (layout.caption - size.height) / 2;
-        font.draw(captions[i], x, y, settings.caption_height, settings.caption, result);
+        font.draw(caption, x, y, settings.caption_height, settings.caption, result);
     }
     return result;
 }

@@ -17,7 +17,7 @@ struct MontageSettings {
 
 /// Pictures side by side, row after row. All panels have the size of the largest; the result has an
 /// even width and height, as videos need.
-/// @param captions  one text above each panel, or empty
+/// @param captions  one line of text above each panel, or empty; what is too long is shortened
 /// @throws ArgumentError if there is no panel, an empty panel or a wrong number of captions
 /// @throws LoadError if captions are asked for and the font is missing
 Image montage(const std::vector<Image>& panels, const std::vector<std::string>& captions = {},

@@ -22,8 +22,14 @@ class ReplacedFile {
  private:
     std::string m_path;
     std::string m_temporary_path;
+    int m_place = -1;  ///< in the list for signals; -1: it is full
     bool m_committed = false;
 };
+
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files of this process before they
+/// end it; signals that are ignored stay so. To be called once, by a program that does nothing else
+/// at these signals.
+void remove_temporary_files_at_signals();
 
 /// Writes `text` to `path`, whole or not at all. @throws LoadError naming the file
 void write_text_file(const std::string& path, const std::string& text);

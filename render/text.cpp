@@ -126,6 +126,20 @@ TextSize Font::measure(const std::string& text, int pixels) const {
     return size;
 }
 
+std::string Font::shortened(const std::string& text, int pixels, int width) const {
+    if (measure(text, pixels).width <= width) return text;
+    std::string beginning = text;
+    while (!beginning.empty()) {
+        // All bytes of a letter but its first one are 10xxxxxx.
+        while ((static_cast<unsigned char>(beginning.back()) & 0xC0) == 0x80 &&
+               beginning.size() > 1)
+            beginning.pop_back();
+        beginning.pop_back();
+        if (measure(beginning + "...", pixels).width <= width) return beginning + "...";
+    }
+    return "";
+}
+
 void Font::draw(const std::string& text, int x, int y, int pixels, Rgb colour, Image& image) const {
     m_face->set_size(pixels);
     int baseline = y + m_face->ascender();

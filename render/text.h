@@ -31,6 +31,11 @@ class Font {
     /// @throws ArgumentError unless pixels is 8 to 200
     TextSize measure(const std::string& text, int pixels) const;
 
+    /// The text as it is if it is at most `width` pixels wide, else its beginning with "..." behind
+    /// it; empty if not even these fit.
+    /// @param text  a single line (UTF-8)
+    std::string shortened(const std::string& text, int pixels, int width) const;
+
     /// Draws text with its top left corner at (x, y); what lies outside of the picture is left out.
     void draw(const std::string& text, int x, int y, int pixels, Rgb colour, Image& image) const;
 

@@ -9,6 +9,7 @@
 #include "demos/bullet_scenes/scene_film.h"
 #include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
+#include "render/replaced_file.h"
 
 using namespace cloth;
 
@@ -119,6 +120,7 @@ void run(const BulletScenesOptions& options) {
 
 int main(int argc, char** argv) {
     return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        remove_temporary_files_at_signals();
         run(parse_bullet_scenes_options(arguments));
     });
 }

@@ -15,9 +15,12 @@ void set_up(CLI::App& app) {
 
 CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
                               int highest, const std::string& description) {
-    return app.add_option(name, value, description)
-        ->check(CLI::Range(lowest, highest).description(""))
-        ->type_name("N");
+    // CLI11 says of 2.5 that it is not in the range.
+    const auto check = [name, lowest, highest](const std::string& text) {
+        whole_number(name, text, lowest, highest);
+        return std::string();
+    };
+    return app.add_option(name, value, description)->check(check)->type_name("N");
 }
 
 CLI::Option* add_rate(CLI::App& app, int& rate) {

@@ -7,7 +7,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +20,7 @@
 #include "demos/compare/progress.h"
 #include "demos/compare/report_html.h"
 #include "demos/compare/solver_factory.h"
+#include "demos/compare/work_folder.h"
 #include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
 
@@ -31,34 +31,12 @@ using nlohmann::json;
 
 namespace {
 
-/// Solvers may be named after files.
-std::string work_file(const CompareOptions& options, std::string name) {
-    std::replace(name.begin(), name.end(), '/', '_');
-    return options.out + "/parts/" + name;
-}
-
 json read_json(const std::string& path) {
     std::ifstream file(path);
     json document = json::parse(file, nullptr, false);
     if (document.is_discarded())
         throw LoadError(path, "", "is not JSON", "delete it; it is computed again");
     return document;
-}
-
-/// Removes results that were computed with other settings or by another program.
-void prepare_work_folder(const CompareOptions& options) {
-    const json settings = {
-        {"commit", build_commit()},   {"garment", options.garment},
-        {"motion", options.motion},   {"fabric", options.fabric},
-        {"rate", options.rate},       {"frames", options.frames},
-        {"threads", options.threads}, {"reference_frames", options.reference_frames},
-        {"weights", options.weights}};
-    const std::string path = work_file(options, "settings.json");
-    std::error_code ignored;
-    if (!std::filesystem::exists(path) || read_json(path) != settings)
-        std::filesystem::remove_all(options.out + "/parts", ignored);
-    std::filesystem::create_directories(options.out + "/parts");
-    write_text_file(path, settings.dump(1));
 }
 
 void save(const CompareOptions& options, const std::string& name, const Measurement& measurement) {
@@ -167,6 +145,7 @@ void compare(const CompareOptions& options) {
 
 int main(int argc, char** argv) {
     return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        remove_temporary_files_at_signals();
         const CompareOptions options = parse_compare_options(arguments);
         if (options.threads > 0) omp_set_num_threads(options.threads);
         options.worker.empty() ? compare(options) : run_worker(options);

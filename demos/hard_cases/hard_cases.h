@@ -34,6 +34,7 @@ struct HardCase {
     /// The bound of stretch is so many times what the reference has in its worst frame, where the
     /// reference was run.
     std::optional<double> stretch_of_reference = std::nullopt;
+    std::string inputs = "";  ///< see HardRow::inputs
 };
 
 /// All cases, in the order in which they are run.

@@ -90,6 +90,7 @@ ordered_json to_json(const HardRow& row) {
     ordered_json json;
     json["case"] = row.hard_case;
     json["stepper"] = row.stepper;
+    if (!row.inputs.empty()) json["inputs"] = row.inputs;
     json["held"] = row.held ? ordered_json(*row.held) : ordered_json();
     json["finite"] = row.finite;
     json["penetration_max_mm"] = rounded(row.penetration_max_mm);
@@ -117,6 +118,7 @@ HardRow row_from_json(const ordered_json& json) {
     HardRow row;
     row.hard_case = json.at("case").get<std::string>();
     row.stepper = json.at("stepper").get<std::string>();
+    row.inputs = json.value("inputs", "");
     if (!json.at("held").is_null()) row.held = json.at("held").get<bool>();
     row.finite = json.at("finite").get<bool>();
     row.penetration_max_mm = number(json.at("penetration_max_mm"));

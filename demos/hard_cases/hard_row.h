@@ -14,6 +14,9 @@ struct HardRow {
     static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
     std::string hard_case, stepper;
+    /// What it was measured with, where the case does not tell: a garment, and what tells files
+    /// apart.
+    std::string inputs;
     std::optional<bool> held;  ///< nothing: it was not run, `failure` says why
     bool finite = true;
     double penetration_max_mm = unknown, penetration_bound_mm = unknown;

@@ -7,11 +7,13 @@
 #include <numeric>
 
 #include "demos/compare/command_line.h"
+#include "demos/compare/input_files.h"
 #include "demos/compare/progress.h"
 #include "demos/hard_cases/contest.h"
 #include "demos/hard_cases/motion_cases.h"
 #include "demos/hard_cases/options.h"
 #include "demos/hard_cases/report.h"
+#include "render/replaced_file.h"
 
 using namespace cloth;
 
@@ -24,9 +26,18 @@ void list_cases() {
         std::printf("%-20s %s\n", hard.name.c_str(), hard.sentence.c_str());
 }
 
+/// Committed weights are told apart by the commit.
+std::string inputs_of(const HardContest& contest, const std::string& stepper) {
+    const std::string weights = contest.solver.weights.empty()
+                                    ? ""
+                                    : files_key(solver_files(stepper, contest.solver.weights));
+    if (contest.hard->inputs.empty() || weights.empty()) return contest.hard->inputs + weights;
+    return contest.hard->inputs + "; " + weights;
+}
+
 /// The case with the bound of stretch that the reference's row sets, if there is one.
 HardCase bounded(HardCase hard, const HardReport& report, int frames) {
-    const HardRow* reference = report.find(hard.name, "reference", frames);
+    const HardRow* reference = report.find(hard.name, "reference", frames, 1, hard.inputs);
     if (hard.stretch_of_reference && reference && reference->held)
         hard.bounds.stretch_p99 = *hard.stretch_of_reference * reference->stretch_p99;
     return hard;
@@ -37,17 +48,19 @@ void run_case(const HardCaseOptions& options, const HardContest& contest, HardRe
               Progress& line) {
     std::vector<std::string> left;
     for (const std::string& stepper : contest.steppers)
-        if (!report.find(contest.hard->name, stepper, contest.frames, contest.starts))
+        if (!report.find(contest.hard->name, stepper, contest.frames, contest.starts,
+                         inputs_of(contest, stepper)))
             left.push_back(stepper);
     if (left.empty()) return;
     const HardScene scene(contest.hard->parts(), contest.frames);
     std::vector<HardStrip> strips;
     for (const std::string& stepper : left) {
         const HardCase hard = bounded(*contest.hard, report, contest.frames);
-        const HardResult result = run_stepper(
+        HardResult result = run_stepper(
             {&hard, contest.frames, {}, contest.solver, contest.drawn, contest.starts}, scene,
             stepper,
             [&](int done, int all, const std::string& what) { line.update(done, all, what); });
+        result.row.inputs = inputs_of(contest, stepper);
         report.add(result.row);
         strips.push_back(result.strip);
         std::printf("%s\n", text_line(result.row).c_str());
@@ -92,6 +105,7 @@ void run(const HardCaseOptions& options) {
 
 int main(int argc, char** argv) {
     return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        remove_temporary_files_at_signals();
         run(parse_hard_case_options(arguments));
     });
 }

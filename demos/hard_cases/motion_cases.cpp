@@ -7,6 +7,7 @@
 #include "data/body/motion.h"
 #include "data/core/errors.h"
 #include "demos/compare/body_scene.h"
+#include "demos/compare/input_files.h"
 #include "demos/hard_cases/case_scenes.h"
 
 namespace cloth {
@@ -53,6 +54,9 @@ HardCase motion_case(const std::string& motion, const std::string& garment, bool
     hard.frames = scene->lead_in_frames() + scene->frames();
     hard.bounds.reason = "1.1 times the reference";
     hard.stretch_of_reference = 1.1;
+    hard.inputs = garment;
+    const std::string files = files_key(scene_files(garment, motion));
+    if (!files.empty()) hard.inputs += "; " + files;
     hard.parts = [scene] {
         const double before = lead_in(*scene);
         return parts_of(scene, [=](double t) { return t - before; });

@@ -36,10 +36,10 @@ HardReport::HardReport(std::string path, int threads, bool resume)
 }
 
 const HardRow* HardReport::find(const std::string& hard_case, const std::string& stepper,
-                                int frames_wanted, int starts) const {
+                                int frames_wanted, int starts, const std::string& inputs) const {
     const auto at = std::find_if(m_rows.begin(), m_rows.end(), [&](const HardRow& row) {
         return row.hard_case == hard_case && row.stepper == stepper &&
-               row.frames_wanted == frames_wanted && row.starts >= starts;
+               row.frames_wanted == frames_wanted && row.starts >= starts && row.inputs == inputs;
     });
     return at == m_rows.end() ? nullptr : &*at;
 }

@@ -15,10 +15,10 @@ class HardReport {
     /// @throws LoadError if there is a file that is no report or that another program has written
     HardReport(std::string path, int threads, bool resume);
 
-    /// A row of the same case, stepper and number of frames, from at least so many starts; null:
-    /// there is none.
+    /// A row of the same case, stepper, number of frames and inputs, from at least so many starts;
+    /// null: there is none.
     const HardRow* find(const std::string& hard_case, const std::string& stepper, int frames_wanted,
-                        int starts = 1) const;
+                        int starts = 1, const std::string& inputs = "") const;
     /// Puts a row in the place of one of the same case and stepper, or at the end.
     void add(const HardRow& row);
 

@@ -13,7 +13,7 @@ namespace cloth {
 namespace {
 
 struct Units {
-    std::string garment, character, up = "y";
+    std::string garment, character, up;
     double goal_colours = 0.0;
     std::vector<double> move;
 };
@@ -30,7 +30,9 @@ void add_garment_file(CLI::App& app, ImportOptions& options, Units& units) {
     app.add_option("--unit", units.garment, "the unit of the file: m (default), cm, mm, dm, in, ft")
         ->type_name("U")
         ->excludes(scale);
-    app.add_option("--up", units.up, "the axis that points up in the file: y (default) or z")
+    app.add_option("--up", units.up,
+                   "the axis that points up in the file: y (default) or z; if it is given,\n"
+                   "garments that lie beside the character are taken, too")
         ->check(CLI::IsMember({"y", "z"}).description(""))
         ->type_name("y|z");
     app.add_option("--move", units.move, "then by so much (m)")->expected(3)->type_name("X Y Z");
@@ -49,12 +51,15 @@ void add_wearer(CLI::App& app, ImportOptions& options, Units& units) {
                        "rigged file (.glb, .fbx, ...) that the garment was modelled on")
             ->type_name("FILE");
     app.add_option("--skin", options.skin.mesh_name, "its mesh that is skin (default: all)")
-        ->type_name("NAME");
+        ->type_name("NAME")
+        ->needs(character);
     auto* scale = app.add_option("--character-scale", options.skin.scale,
-                                 "metres per unit of its file, where it does not say itself");
+                                 "metres per unit of its file, where it does not say itself")
+                      ->needs(character);
     app.add_option("--character-unit", units.character, "the same by name, as --unit")
         ->type_name("U")
-        ->excludes(scale);
+        ->excludes(scale)
+        ->needs(character);
     app.add_option("--body", options.body,
                    "instead of --character the project's body: default, slight, heavy, or the\n"
                    "number of a sampled shape. The garment is written for the body default,\n"
@@ -91,6 +96,7 @@ void check(ImportOptions& options, const Units& units) {
         throw UsageError("--move: give three numbers");
     if (!units.move.empty()) options.move = Vec3(units.move[0], units.move[1], units.move[2]);
     options.z_up = units.up == "z";
+    options.up_is_given = !units.up.empty();
     check_range("--scale", options.scale, 1e-6, 1e6);
     for (int axis = 0; axis < 3; ++axis) check_range("--move", options.move[axis], -1e3, 1e3);
     if (units.goal_colours != 0.0) {

@@ -15,6 +15,7 @@ struct ImportOptions {
     std::string mesh;    ///< in the file; empty: all
     double scale = 1.0;  ///< metres per unit of the file
     bool z_up = false;
+    bool up_is_given = false;  ///< the axis is not to be doubted
     Vec3 move = Vec3::Zero();  ///< (m)
 
     std::string character;  ///< its file; empty: the project's body

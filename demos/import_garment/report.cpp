@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "demos/compare/json_numbers.h"
+#include "demos/compare/shell_word.h"
 
 namespace cloth {
 namespace {
@@ -142,18 +143,22 @@ std::string outfit_name(const GarmentImport& import, const std::vector<WrittenGa
     return outfit;
 }
 
+std::string program(const ImportOptions& options, const std::string& name) {
+    return shell_word(options.programs + name);
+}
+
 /// The two programs that show and bake a garment on the character.
 std::string character_text(const ImportOptions& options, const GarmentImport& import,
                            const std::string& garment, const GarmentSupport& support) {
     std::string scene =
-        " --character " + options.character +
-        (options.skin.mesh_name.empty() ? "" : " --skin '" + options.skin.mesh_name + "'");
+        " --character " + shell_word(options.character) +
+        (options.skin.mesh_name.empty() ? "" : " --skin " + shell_word(options.skin.mesh_name));
     char number[64];
     if (options.skin.scale != 1.0) {
         std::snprintf(number, sizeof number, " --character-scale %.9g", options.skin.scale);
         scene += number;
     }
-    scene += " --garment " + garment;
+    scene += " --garment " + shell_word(garment);
     if (import.clearance < options.import.clearance) {
         std::snprintf(number, sizeof number, " --clearance %g", import.clearance);
         scene += number;
@@ -162,7 +167,7 @@ std::string character_text(const ImportOptions& options, const GarmentImport& im
         std::snprintf(number, sizeof number, " --pin %.3f %.3f", support.pin_low, support.pin_high);
         scene += number;
     }
-    return "  " + options.programs + "viewer" + scene + "\n  " + options.programs + "bake" + scene +
+    return "  " + program(options, "viewer") + scene + "\n  " + program(options, "bake") + scene +
            " --out out/cloth.pc2 --body out/body.pc2\n";
 }
 
@@ -170,9 +175,9 @@ std::string next_text(const ImportOptions& options, const GarmentImport& import,
                       const std::vector<WrittenGarment>& written, const TriMesh& skin) {
     const std::string head = "next\n", outfit = outfit_name(import, written, skin);
     if (options.character.empty())
-        return head + "  " + options.programs + "compare --garment " + outfit + " --body " +
-               options.body + "\n  " + options.programs + "bake --garment " + outfit +
-               " --out out/cloth.pc2 --body out/body.pc2\n";
+        return head + "  " + program(options, "compare") + " --garment " + shell_word(outfit) +
+               " --body " + options.body + "\n  " + program(options, "bake") + " --garment " +
+               shell_word(outfit) + " --out out/cloth.pc2 --body out/body.pc2\n";
     // Pins between heights would hold the other garments there, too.
     const bool one_by_one = std::any_of(
         import.garments.begin(), import.garments.end(),

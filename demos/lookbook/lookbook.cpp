@@ -5,10 +5,12 @@
 #include <memory>
 
 #include "data/body/body_shapes.h"
+#include "data/body/outfit.h"
 #include "demos/compare/body_named.h"
 #include "demos/lookbook/look.h"
 #include "render/montage.h"
 #include "render/osmesa_renderer.h"
+#include "render/text.h"
 #include "render/video.h"
 
 namespace cloth {
@@ -21,11 +23,29 @@ std::vector<std::string> bodies_of(const LookbookOptions& options) {
     return BodyShapes::load_shared() ? body_names() : std::vector<std::string>{"default"};
 }
 
+/// What stands above a garment: of one's own, its file's name without folder and ending.
+std::string heading_of(const std::string& garment) {
+    std::string heading;
+    for (const std::string& part : outfit_parts(garment))
+        heading += (heading.empty() ? "" : "+") + std::filesystem::path(part).stem().string();
+    return heading;
+}
+
+std::vector<std::string> headings_of(const LookbookOptions& options) {
+    std::vector<std::string> headings;
+    for (const std::string& garment : options.garments) headings.push_back(heading_of(garment));
+    return headings;
+}
+
 /// All garments on one body, and the camera that follows it.
 class Row {
  public:
     Row(const LookbookOptions& options, const std::string& body, OsmesaRenderer& renderer)
-        : m_options(options), m_body(body), m_renderer(renderer), m_tracker(tracker()) {
+        : m_options(options),
+          m_headings(headings_of(options)),
+          m_body(body),
+          m_renderer(renderer),
+          m_tracker(tracker()) {
         for (const std::string& garment : options.garments) {
             BodySceneSettings settings;
             settings.garment = garment;
@@ -68,8 +88,7 @@ class Row {
         for (int frame = 0; frame < frames(); ++frame) {
             for (const auto& look : m_looks) look->step();
             if (m_options.video)
-                add(video,
-                    montage(panels(m_tracker.follow(m_looks.front()->skin())), m_options.garments));
+                add(video, montage(panels(m_tracker.follow(m_looks.front()->skin())), m_headings));
             if (frame == shown) picture = portraits();
             progress(frame + 1, frames(), m_body + ": frames");
         }
@@ -90,6 +109,7 @@ class Row {
     }
 
     const LookbookOptions& m_options;
+    std::vector<std::string> m_headings;
     std::string m_body;
     OsmesaRenderer& m_renderer;
     FigureTracker m_tracker;
@@ -103,19 +123,25 @@ class Page {
 
     void add(const std::string& row, const std::vector<Image>& panels) {
         m_panels.insert(m_panels.end(), panels.begin(), panels.end());
-        for (const std::string& garment : m_options.garments)
-            m_captions.push_back(garment + ", " + row);
+        // The body's name stays whole: it is what tells the rows apart.
+        const std::string end = ", " + row;
+        const int room = width - text_height - m_font.measure(end, text_height).width;
+        for (const std::string& heading : headings_of(m_options))
+            m_captions.push_back(m_font.shortened(heading, text_height, room) + end);
     }
 
     void write() const {
         MontageSettings settings;
         settings.columns = static_cast<int>(m_options.garments.size());
-        settings.caption_height = 14;
+        settings.caption_height = text_height;
         write_png(m_options.out + "/lookbook.png", montage(m_panels, m_captions, settings));
     }
 
  private:
+    static constexpr int text_height = 14;  // of the captions (pixels)
+
     const LookbookOptions& m_options;
+    Font m_font;
     std::vector<Image> m_panels;
     std::vector<std::string> m_captions;
 };

@@ -35,6 +35,7 @@ void run(const LookbookOptions& options) {
 
 int main(int argc, char** argv) {
     return run_program(argc, argv, [](const std::vector<std::string>& arguments) {
+        remove_temporary_files_at_signals();
         run(parse_lookbook_options(arguments));
     });
 }

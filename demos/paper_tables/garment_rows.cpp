@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "demos/compare/input_files.h"
 #include "demos/compare/json_numbers.h"
 #include "demos/compare/statistics.h"
 #include "demos/paper_tables/network_cost.h"
@@ -24,9 +25,11 @@ constexpr const char* fabric = "soft";
 std::string key_of(const GarmentPlan& plan, const std::string& solver,
                    const GarmentRowSettings& settings) {
     if (!what_is_missing(solver, plan.garment, settings.solver.weights).empty()) return "missing";
+    const std::string garment = files_key(garment_files(plan.garment));
     return std::to_string(plan.frames) + " frames, " + std::to_string(settings.solver.threads) +
            " threads, weights " +
-           fingerprint(weights_of(solver, plan.garment, settings.solver.weights));
+           fingerprint(weights_of(solver, plan.garment, settings.solver.weights)) +
+           (garment.empty() ? "" : ", garment " + garment);
 }
 
 ordered_json begun_row(const GarmentPlan& plan, const std::string& solver,
@@ -208,7 +211,9 @@ void measure_garment(const GarmentPlan& plan, const GarmentRowSettings& settings
     // A name that cannot be used is known before the expensive part begins.
     for (const std::string& solver : left) make_solver(solver, *scene, settings.solver);
     const ReferenceCache cache(settings.references + "/" + build_commit(),
-                               std::filesystem::path(plan.garment).stem().string(), *scene);
+                               std::filesystem::path(plan.garment).stem().string() +
+                                   short_key(garment_files(plan.garment)),
+                               *scene);
     const ClothState start = cache.start(tell);
     const MeasuredScene measured{*scene, start, cache.references(start, tell)};
     for (size_t k = 0; k < left.size(); ++k) {

@@ -15,7 +15,7 @@ const char* const explanations =
     "Each row is measured by itself: memory of the solver, a rollout, and single steps from\n"
     "the reference's states. It is kept in paper_tables.json as soon as it is done. The same\n"
     "command goes on; rows of another commit, number of frames or threads, or of other weights\n"
-    "are measured anew. Networks without weights get a row that says so.\n"
+    "or files are measured anew. Networks without weights get a row that says so.\n"
     "\n"
     "Figure 7 is trained by train_series --series neighbours; its report is committed.";
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
-#include <cstdio>
 #include <filesystem>
 
 #include "data/core/errors.h"
@@ -101,18 +99,6 @@ void PaperReport::set(const std::string& member, const Json& value) {
 
 void PaperReport::save() const {
     write_text_file(m_path, m_document.dump(1) + "\n");
-}
-
-std::string fingerprint(const std::string& file) {
-    if (file.empty()) return "";
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char byte : read_file(file)) {
-        hash ^= static_cast<unsigned char>(byte);
-        hash *= 1099511628211ULL;
-    }
-    std::array<char, 17> digits{};
-    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(hash));
-    return digits.data();
 }
 
 }  // namespace cloth

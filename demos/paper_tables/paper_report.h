@@ -48,8 +48,4 @@ class PaperReport {
     Json m_document;
 };
 
-/// Tells files apart: a hash of their bytes (FNV-1a, 64 bits), in hexadecimal digits; empty for an
-/// empty path.
-std::string fingerprint(const std::string& file);
-
 }  // namespace cloth

@@ -4,6 +4,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/paths.h"
+#include "demos/compare/input_files.h"
 #include "demos/compare/json_numbers.h"
 #include "demos/train_series/child_process.h"
 #include "demos/train_series/metrics_row.h"

@@ -37,10 +37,11 @@ ordered_json head_json(const std::vector<int>& cores, bool torch, const std::str
 }
 
 void write_plots(const SpeedErrorOptions& options, const SceneReport& report) {
+    const std::string scene = std::filesystem::path(report.rows.front().scene).stem().string();
     for (const NamedPlot& plot : speed_error_plots(report.rows))
-        write_text_file(options.out + "/" + report.rows.front().scene + "_" +
-                            report.rows.front().fabric + "_" + plot.name + ".svg",
-                        plot.svg);
+        write_text_file(
+            options.out + "/" + scene + "_" + report.rows.front().fabric + "_" + plot.name + ".svg",
+            plot.svg);
 }
 
 void write_tables(const SpeedErrorOptions& options, const ordered_json& head,

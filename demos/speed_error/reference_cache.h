@@ -11,7 +11,9 @@ namespace cloth {
 class ReferenceCache {
  public:
     /// @param folder  made if it is not there
-    /// @param name    tells scenes apart, such as "tshirt_soft"
+    /// @param name    tells scenes apart, such as "tshirt_soft"; of files also by what they hold,
+    /// see
+    ///                short_key()
     ReferenceCache(const std::string& folder, const std::string& name,
                    const ComparisonScene& scene);
 

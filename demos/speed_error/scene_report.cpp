@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "demos/compare/input_files.h"
 #include "demos/speed_error/reference_cache.h"
 
 namespace cloth {
@@ -54,14 +55,21 @@ std::vector<double> times_of(const std::string& name, const std::vector<std::str
     return results[static_cast<size_t>(at - solvers.begin())].rollout.ms;
 }
 
+/// What its references are kept under: scenes of files are told apart by what these hold.
+std::string cache_name(const SceneSettings& settings) {
+    const std::vector<std::string> files = garment_files(settings.name);
+    return (files.empty() ? settings.name : std::filesystem::path(settings.name).stem().string()) +
+           "_" + settings.fabric + "_" + std::to_string(settings.rate) + "Hz_" + settings.body +
+           "_" + std::filesystem::path(settings.motion).stem().string() +
+           (settings.limbs ? "_limbs" : "") +
+           short_key(scene_files(settings.name, settings.motion));
+}
+
 }  // namespace
 
 SceneReport measure_scene(const SceneSettings& scene_settings, const ContestSettings& settings,
                           const ProgressFunction& progress) {
-    const std::string name = scene_settings.name + "_" + scene_settings.fabric + "_" +
-                             std::to_string(scene_settings.rate) + "Hz_" + scene_settings.body +
-                             "_" + std::filesystem::path(scene_settings.motion).stem().string() +
-                             (scene_settings.limbs ? "_limbs" : "");
+    const std::string name = cache_name(scene_settings);
     const auto tell = [&](int done, int all, const std::string& what) {
         progress(done, all, scene_settings.name + ", " + scene_settings.fabric + ": " + what);
     };

@@ -43,6 +43,16 @@ TEST(Montage, CaptionsStandAbovePanels) {
     EXPECT_EQ(image.at(100, image.height() - 1), (Rgb{0, 0, 255}));
 }
 
+TEST(Montage, LongCaptionsStayAboveTheirPanels) {
+    const MontageSettings settings;
+    const std::vector<Image> panels(2, Image(200, 100, {0, 0, 255}));
+    const std::string path = "/home/somebody/garments/of/mine/skirt.obj";
+    const Image image = montage(panels, {path, path}, settings);
+    for (int y = 0; y < image.height() - 100; ++y)
+        for (int x = 200; x < 200 + settings.gap; ++x)
+            ASSERT_EQ(image.at(x, y), settings.background) << "between the captions";
+}
+
 TEST(Montage, ChoosesColumnsForAWidePicture) {
     const auto columns = [](int count) {
         const Image image =

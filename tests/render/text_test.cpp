@@ -31,6 +31,23 @@ Ink ink_of(const Image& image) {
     return ink;
 }
 
+TEST(Font, WhatIsTooLongIsShortenedBetweenLetters) {
+    const Font font;
+    EXPECT_EQ(font.shortened("skirt", 14, 240), "skirt");
+    const std::string text = "ein sehr langer Name für Röcke";
+    for (int width = 30; width < 240; width += 7) {
+        const std::string cut = font.shortened(text, 14, width);
+        EXPECT_LE(font.measure(cut, 14).width, width);
+        if (cut == text) continue;
+        ASSERT_GT(cut.size(), 3u) << width;
+        EXPECT_EQ(cut.substr(cut.size() - 3), "...");
+        const std::string rest = text.substr(cut.size() - 3);
+        EXPECT_EQ(text.rfind(cut.substr(0, cut.size() - 3), 0), 0u) << cut;
+        EXPECT_NE(static_cast<unsigned char>(rest[0]) & 0xC0, 0x80) << "cut within a letter";
+    }
+    EXPECT_EQ(font.shortened(text, 14, 3), "");
+}
+
 TEST(Font, InkFillsTheMeasuredBox) {
     const Font font;
     const std::string text = "Hfast+2\ngy 12.4 ms";

@@ -43,6 +43,8 @@ TEST(CompareOptions, RefusesWhatItDoesNotUnderstandByName) {
               std::string::npos);
     EXPECT_NE(message({"--frames", "three"}).find("three"), std::string::npos);
     EXPECT_NE(message({"--frames", "-1"}).find("-1"), std::string::npos);
+    EXPECT_EQ(message({"--frames", "2.5"}).find("--frames 2.5: give a whole number from "), 0u);
+    EXPECT_EQ(message({"--frames", "1e3"}).find("--frames 1e3: give a whole number from "), 0u);
     EXPECT_NE(message({"--frames"}).find("required"), std::string::npos);
     EXPECT_NE(message({"--fabric", "silk"}).find("silk"), std::string::npos);
     EXPECT_NE(message({"--solvers", ","}).find("--solvers"), std::string::npos);

@@ -8,8 +8,11 @@
 #include <fstream>
 
 #include "data/core/errors.h"
+#include "data/files/garment_assets.h"
+#include "data/files/mesh_io.h"
 #include "demos/hard_cases/case_scenes.h"
 #include "demos/hard_cases/contest.h"
+#include "demos/hard_cases/motion_cases.h"
 
 namespace cloth::report_test {
 
@@ -238,6 +241,31 @@ TEST(HardReport, RowsComeBackFromTheFile) {
     EXPECT_NE(table.find("| falling | held | held | not run | frame 0: refused: too small |"),
               std::string::npos)
         << table;
+}
+
+TEST(HardReport, RowsOfOtherGarmentsAndFilesAreNotTaken) {
+    const std::string path = ::testing::TempDir() + "hard_cases_inputs.json";
+    std::filesystem::remove(path);
+    HardRow row = skipped_row(falling({}), "reference", "too expensive", 4);
+    row.inputs = "skirt.obj, 5 bytes, 1234";
+    HardReport(path, /*threads=*/1, /*resume=*/false).add(row);
+    const HardReport again(path, /*threads=*/1, /*resume=*/true);
+    EXPECT_NE(again.find("falling", "reference", 4, 1, row.inputs), nullptr);
+    EXPECT_EQ(again.find("falling", "reference", 4, 1, "skirt.obj, 5 bytes, 5678"), nullptr);
+    EXPECT_EQ(again.find("falling", "reference", 4), nullptr);
+}
+
+TEST(HardReport, AMotionCaseTellsItsGarmentAndFiles) {
+    const std::string shirt = ::testing::TempDir() + "motion_case_shirt.obj";
+    const TriMesh mesh = load_garment_mesh("tshirt_1000");
+    save_obj(shirt, mesh);
+    const std::string before = motion_case("01_01", shirt).inputs;
+    EXPECT_EQ(motion_case("01_01", shirt).inputs, before);
+    EXPECT_NE(motion_case("01_01", "tshirt_1000").inputs, before);
+    save_obj(shirt, {1.001 * mesh.vertices, mesh.faces});
+    EXPECT_NE(motion_case("01_01", shirt).inputs, before);
+    EXPECT_NE(motion_case("01_01", "pants_1000").inputs,
+              motion_case("01_01", "tshirt_1000").inputs);
 }
 
 TEST(HardReport, TheSchemaIsWhatReadersRelyOn) {

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "data/authoring/garment_support.h"
 #include "data/body/body_shapes.h"
@@ -17,6 +18,22 @@ namespace cloth::import_file_test {
 using namespace cloth::test;
 
 namespace {
+
+/// A square of 1 m behind the person.
+TriMesh sheet_on_the_floor() {
+    constexpr int n = 20;
+    TriMesh sheet{Points((n + 1) * (n + 1), 3), Faces(2 * n * n, 3)};
+    for (int i = 0; i <= n; ++i)
+        for (int k = 0; k <= n; ++k)
+            sheet.vertices.row(i * (n + 1) + k) << double(i) / n - 0.5, 0.02, -0.2 - double(k) / n;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < n; ++k) {
+            const int a = i * (n + 1) + k, f = 2 * (i * n + k);
+            sheet.faces.row(f) << a, a + 1, a + n + 2;
+            sheet.faces.row(f + 1) << a, a + n + 2, a + n + 1;
+        }
+    return sheet;
+}
 
 class ImportFile : public FileTest {
  protected:
@@ -159,6 +176,92 @@ TEST_F(ImportFile, TheMoveThatIsProposedBringsTheGarmentAbout) {
     EXPECT_NEAR(y, 0.85, 0.1) << message;
     EXPECT_NE(message.find("with the middle at the origin"), std::string::npos) << message;
     EXPECT_EQ(message.find("lies on its side"), std::string::npos) << message;
+}
+
+TEST_F(ImportFile, AMoveThatIsProposedCanBeFollowed) {
+    TriMesh beside = worn_garment("skirt_1000");
+    beside.vertices.col(0).array() += 2.0;
+    TriMesh above = worn_garment("tshirt_1000");
+    above.vertices.col(1).array() += 5.0;
+    for (const TriMesh& mesh : {beside, above}) {
+        const std::string message = refusal(options_for(mesh));
+        EXPECT_EQ(message.find("-0.00"), std::string::npos) << message;
+        const size_t at = message.find("--move ");
+        ASSERT_NE(at, std::string::npos) << message;
+        std::istringstream words(message.substr(at));
+        std::string option, x, y, z;
+        words >> option >> x >> y >> z;
+        const ImportResult result = import_file(options_for("thing.obj", {"--move", x, y, z}));
+        EXPECT_LT(result.json.at("garments").at(0).at("part_inside_before"), 0.3) << message;
+        std::filesystem::remove_all(path("out"));
+    }
+    const std::string message = refusal(options_for(beside));
+    EXPECT_NE(message.find("--move -2.00 0.00 "), std::string::npos) << message;
+}
+
+TEST_F(ImportFile, WhatLiesBesideTheCharacterWithAnotherAxisUpIsSaid) {
+    const TriMesh skirt = worn_garment("skirt_1000");
+    TriMesh z_up = skirt, minus_z_up = skirt;
+    z_up.vertices << skirt.vertices.col(0), -skirt.vertices.col(2), skirt.vertices.col(1);
+    minus_z_up.vertices << skirt.vertices.col(0), skirt.vertices.col(2), -skirt.vertices.col(1);
+    const std::string message = refusal(options_for(z_up));
+    EXPECT_NE(message.find("it lies beside the character"), std::string::npos) << message;
+    EXPECT_NE(message.find("--up z if the file has z up; --up y takes"), std::string::npos)
+        << message;
+    const ImportResult mended = import_file(options_for("thing.obj", {"--up", "z"}));
+    EXPECT_EQ(mended.json.at("garments").at(0).at("sort"), "skirt");
+    import_file(options_for("thing.obj", {"--up", "y", "--move", "0", "0", "-0.1"}));
+    std::filesystem::remove_all(path("out"));
+    EXPECT_NE(refusal(options_for(minus_z_up)).find("where -z points up now"), std::string::npos);
+}
+
+TEST_F(ImportFile, WideClothesAreNotTakenForTurnedOnes) {
+    TriMesh gown = worn_garment("skirt_1000");
+    const double waist = gown.vertices.col(1).maxCoeff(), low = gown.vertices.col(1).minCoeff();
+    for (Eigen::Index i = 0; i < gown.vertices.rows(); ++i) {
+        const double wider = 1.0 + 2.5 * (waist - gown.vertices(i, 1)) / (waist - low);
+        gown.vertices(i, 0) *= wider;
+        gown.vertices(i, 2) *= wider;
+    }
+    import_file(options_for(gown));
+    TriMesh train = sheet_on_the_floor();
+    std::filesystem::remove_all(path("out"));
+    try {
+        import_file(options_for(train));
+    } catch (const std::exception& error) {
+        EXPECT_EQ(std::string(error.what()).find("lies beside"), std::string::npos) << error.what();
+    }
+}
+
+TEST_F(ImportFile, ADressedCharacterIsToldApartByItsMeshes) {
+    const std::string file = model_path("Collada/human.zae");
+    ImportOptions options = parse_import_options({file, "--character", file, "--out", path("out")});
+    const std::string message = refusal(options);
+    EXPECT_EQ(message.rfind(file + ": it is garment and character at once", 0), 0u) << message;
+    EXPECT_NE(message.find("human-baseMesh"), std::string::npos) << message;
+    EXPECT_NE(message.find("Remedy: --mesh NAME"), std::string::npos) << message;
+    save_obj(path("thing.obj"), worn_garment("skirt_1000"));
+    std::filesystem::create_symlink(path("thing.obj"), path("link.obj"));
+    options = options_for("thing.obj", {"--character", path("link.obj")});
+    EXPECT_NE(refusal(options).find("has one mesh only"), std::string::npos);
+}
+
+TEST_F(ImportFile, ColoursThatAreNotThereAreMissed) {
+    save_obj(path("thing.obj"), worn_garment("skirt_1000"));
+    const std::string message = refusal(options_for("thing.obj", {"--goal-colours", "0.1"}));
+    EXPECT_NE(message.find("it has no vertex colours"), std::string::npos) << message;
+    EXPECT_NE(message.find("leave --goal-colours out"), std::string::npos) << message;
+}
+
+TEST_F(ImportFile, CommandsThatItProposesAreQuotedForAShell) {
+    save_obj(path("it's & co.obj"), worn_garment("tshirt_1000"));
+    ImportOptions options = options_for("it's & co.obj");
+    options.programs = "/opt/my programs/";
+    const std::string text = import_file(options).text;
+    EXPECT_NE(
+        text.find("\n  '/opt/my programs/compare' --garment '" + path("out/it'\\''s & co.obj'")),
+        std::string::npos)
+        << text;
 }
 
 TEST_F(ImportFile, ASkirtThatLiesOnItsSideIsSaid) {

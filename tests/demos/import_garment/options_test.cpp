@@ -63,6 +63,9 @@ TEST(ImportOptions, WhatCannotBeRightIsRefusedByName) {
              {{"--band-ratio", "0.4"}, "band_ratio"},
              {{"--body", "giant"}, "giant"},
              {{"--body", "heavy", "--character", "b.glb"}, "--character"},
+             {{"--character-scale", "0.01"}, "--character-scale requires --character"},
+             {{"--character-unit", "cm"}, "--character-unit requires --character"},
+             {{"--skin", "body"}, "--skin requires --character"},
              {{"--name", "a/b"}, "--name"},
              {{"--what"}, "--what"}}) {
         const std::string message = refusal(arguments);

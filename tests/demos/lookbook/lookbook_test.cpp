@@ -4,6 +4,8 @@
 
 #include <filesystem>
 
+#include "data/core/paths.h"
+#include "data/core/read_file.h"
 #include "demos/compare/arguments.h"
 #include "demos/lookbook/look.h"
 
@@ -51,6 +53,23 @@ TEST(Lookbook, AGarmentOfSeveralPartsIsDrawnPartByPart) {
     ASSERT_EQ(scene.meshes.size(), 3u);  // with the skin
     EXPECT_EQ(scene.meshes[1].faces->rows() + scene.meshes[2].faces->rows(),
               look.scene().garment().face_count());
+}
+
+TEST(Lookbook, AGarmentOfAFileIsHeadedByTheFilesName) {
+    LookbookOptions options = small_book("headings");
+    options.garments = {"skirt_1000"};
+    options.frames = 1;
+    options.video = false;
+    make_lookbook(options, quiet);
+    const std::string named = read_file(options.out + "/lookbook.png");
+    const std::string folder = options.out + "/a/folder/with/a/long/name";
+    std::filesystem::create_directories(folder);
+    for (const char* ending : {".obj", ".worn.obj"})
+        std::filesystem::copy_file(asset_path("garments") + "/skirt_1000" + ending,
+                                   folder + "/skirt_1000" + ending);
+    options.garments = {folder + "/skirt_1000.obj"};
+    make_lookbook(options, quiet);
+    EXPECT_EQ(read_file(options.out + "/lookbook.png"), named);
 }
 
 TEST(Lookbook, ALossIsReported) {

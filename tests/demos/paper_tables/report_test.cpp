@@ -103,18 +103,4 @@ TEST_F(Report, ADamagedFileIsNamedWithTheRemedy) {
     EXPECT_EQ(refusal("{}"), "");
 }
 
-TEST_F(Report, WeightsAreToldApartByTheirBytes) {
-    std::filesystem::create_directories(m_folder);
-    const std::string a = m_folder + "/a", b = m_folder + "/b";
-    write_text_file(a, "weights");
-    write_text_file(b, "Weights");
-    EXPECT_NE(fingerprint(a), fingerprint(b));
-    write_text_file(b, "weights");
-    EXPECT_EQ(fingerprint(a), fingerprint(b));
-    write_text_file(b, "a");
-    EXPECT_EQ(fingerprint(b), "af63dc4c8601ec8c") << "FNV-1a of one letter, as published";
-    EXPECT_EQ(fingerprint(""), "");
-    EXPECT_THROW(fingerprint(m_folder + "/none"), LoadError);
-}
-
 }  // namespace cloth::paper_report_test

@@ -5,7 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iterator>
 
+#include "data/files/garment_assets.h"
+#include "data/files/mesh_io.h"
 #include "demos/compare/arguments.h"
 #include "demos/speed_error/reference_cache.h"
 #include "demos/speed_error/scene_report.h"
@@ -137,6 +140,23 @@ TEST(ReferenceCache, GoesOnWhereAShorterRunStopped) {
         EXPECT_EQ(parts.fine[k].x, whole.fine[k].x);
     }
     EXPECT_EQ(references_of(2, "parts").coarse.size(), 3u);
+}
+
+TEST(Contest, ReferencesOfAFileThatChangedAreMadeAnew) {
+    const ContestSettings contest = contest_of({"xpbd-5"}, "speed_error_changed");
+    const std::string shirt = ::testing::TempDir() + "speed_error_shirt.obj";
+    const TriMesh mesh = load_garment_mesh("tshirt_1000");
+    SceneSettings settings = tiny(shirt);
+    settings.frames = 1;
+    const auto kept_files = [&] {
+        const std::filesystem::directory_iterator files(contest.work);
+        return std::distance(begin(files), end(files));
+    };
+    for (const double size : {1.0, 1.001, 1.001}) {
+        save_obj(shirt, {size * mesh.vertices, mesh.faces});
+        measure_scene(settings, contest, quiet);
+        EXPECT_EQ(kept_files(), size == 1.0 ? 3 : 6) << "start and two references of each";
+    }
 }
 
 TEST(Contest, UnknownNamesAreRefusedBeforeTheDearPart) {
