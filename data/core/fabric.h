@@ -6,8 +6,8 @@ namespace cloth {
 /// times the thickness, multiplied once and for all so that no formula multiplies them again.
 struct Fabric {
     double density = 0.20022;  ///< mass per area (kg/m^2), 1e-3 to 1e3; cloth has 0.03 to 1
-    double mu = 11.1;      ///< first Lame constant of the sheet (N/m), 0 to 1e6; cloth: 1 to 1e4
-    double lambda = 20.9;  ///< second Lame constant of the sheet (N/m), 0 to 1e6; cloth: 1 to 1e4
+    double mu = 11.1;          ///< shear modulus of the sheet (N/m), 0 to 1e6; cloth: 1 to 1e4
+    double lambda = 20.9;  ///< first Lame constant of the sheet (N/m), 0 to 1e6; cloth: 1 to 1e4
     double bending = 3.96e-5;  ///< dihedral bending stiffness (N m), 0 to 1; cloth: 1e-8 to 1e-2
 
     /// SNUG's cotton: the soft fabric that learned cloth is usually trained on, 33 N/m.

@@ -27,7 +27,7 @@ class Garment {
     /// @param rest_angles  true: the rest mesh's own dihedral angles are the rest angles; false:
     /// flat
     /// @throws ArgumentError if the mesh is unusable, a pin is out of range or a fabric constant is
-    ///         not positive and finite
+    ///         out of its range, see Fabric
     Garment(std::string name, TriMesh rest, Fabric fabric, std::vector<int> pins = {},
             bool rest_angles = false);
 

@@ -18,7 +18,7 @@ struct NearestPoint {
 };
 
 /// Exact signed distance to a triangle surface that does not move: what garments are fitted with.
-/// (The query of the per-frame path, against moving obstacles, is collision/proximity.h.)
+/// (The query of the per-frame path, against moving obstacles, is collision/proximity/proximity.h.)
 ///
 /// The sign is that of the angle-weighted normal at the nearest point, which is exact for closed
 /// surfaces (Baerentzen and Aanaes 2005).

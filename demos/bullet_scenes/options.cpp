@@ -60,7 +60,7 @@ BulletScenesOptions parse_bullet_scenes_options(const std::vector<std::string>& 
              "SimpleCloth");
     add_list(app, "--solvers", options.solvers,
              "bullet, default (make_cloth() as it comes), quasi-newton-K,\n"
-             "quasi-newton-KsR[-cgN] (R a second), or a network NAME[+K];\n"
+             "quasi-newton-KsR[-cgN] (R a second), xpbd-N, or a network NAME[+K];\n"
              "default bullet,default,small");
     add_list(app, "--rates", rates, "even steps per second, 10 to 1000, default 60");
     add_list(app, "--steps", options.steps,

@@ -1,5 +1,6 @@
 #include "demos/bullet_scenes/scene_solver.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "demos/compare/arguments.h"
@@ -41,6 +42,12 @@ std::optional<int> number_after(const std::string& name, const std::string& pref
 StepperFactory network(const std::string& name, const std::string& folder) {
     const NetworkName wanted(name);
     if (wanted.torch) throw UsageError("solver " + name + ": here networks run in the engine only");
+    const std::vector<std::string> networks = networks_in(folder);
+    if (std::find(networks.begin(), networks.end(), wanted.variant) == networks.end())
+        throw UsageError("solver " + name +
+                         ": is unknown; choose bullet, default, quasi-newton-K, "
+                         "quasi-newton-KsR[-cgN], xpbd-N, or NAME[+K] of a network (" +
+                         join_list(networks, ", ") + ")");
     ClothSettings settings;
     const std::string prefix = wanted.variant + "+";
     const auto small = small_steps_named(prefix + wanted.refine, prefix);

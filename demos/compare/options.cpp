@@ -41,17 +41,22 @@ CompareOptions parse_compare_options(const std::vector<std::string>& arguments) 
         ->check(CLI::IsMember({"soft", "real"}).description(""))
         ->type_name("soft|real");
     add_list(app, "--solvers", options.solvers,
-             "bullet, bullet-fine, bullet-K (K iterations), reference,\n"
-             "quasi-newton, quasi-newton-K (K iterations),\n"
+             "default (the library's), bullet, bullet-fine, bullet-K, bullet-KxS\n"
+             "(K iterations, S sub-steps), reference, newton-K,\n"
+             "quasi-newton, quasi-newton-K (K iterations), quasi-newton-KxS,\n"
              "quasi-newton-KsR[-cgN] (R small steps a second), xpbd-N (N\n"
              "substeps), skinning, skinning-raw (the garment's own\n"
              "network, if it has one), and networks: small, fast, baseline, sampling,\n"
              "reduction, as shipped (10 refinement iterations or more,\n"
              "fast motion in sub-steps), or each with +K for exactly K\n"
-             "refinement iterations (+0: the network alone); -bdf2 at\n"
-             "the end: by BDF2 instead of backward Euler;\n"
+             "refinement iterations (+0: the network alone), +KsR for small\n"
+             "steps; -bdf2 at the end: by BDF2 instead of backward Euler;\n"
              "bf16-NAME: its products in bfloat16; @M at the end: in M ms\n"
-             "a step, see Stepper::set_max_ms()");
+             "a step, see Stepper::set_max_ms(); ~N or ~GARMENT: on a proxy of\n"
+             "N vertices or another garment, which shows this one, and +K,\n"
+             "+NAME or +NAME+K behind that: with a step of its own.\n"
+             "Default: bullet,bullet-fine,quasi-newton-10,\n"
+             "quasi-newton-10-bdf2,quasi-newton,xpbd-40,small,small+0");
     add_hint(app, "--character",
              "bake, viewer and hello_character take one; solvers are compared on the project's "
              "body");

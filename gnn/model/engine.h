@@ -29,7 +29,7 @@ struct EngineMemory {
 /// One engine serves one thread at a time; several share their weights.
 class Engine : public Predictor {
  public:
-    /// @throws ArgumentError if this processor lacks the instructions or threads is negative
+    /// @throws ArgumentError if this processor lacks the instructions or threads is out of range
     explicit Engine(std::shared_ptr<const EngineWeights> weights, EngineSettings settings = {});
     /// Weights of its own. @throws ArgumentError as EngineWeights does
     explicit Engine(const Weights& weights, EngineSettings settings = {});

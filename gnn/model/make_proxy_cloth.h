@@ -15,7 +15,7 @@ struct ProxyClothSettings {
                             ///< one trained with `train --proxies`; null: none
     EngineSettings engine;  ///< that runs it
 
-    /// The least time for a fine garment: a network for steps of 1/60 s, such as `small60`, is
+    /// For a fine garment on a character: a network for steps of 1/60 s, such as `small60`, is
     /// asked on the proxy in each of them, two iterations follow, and the fine garment has no step
     /// of its own. A proxy of 1,500 vertices suits it. World steps should be multiples of 1/60 s;
     /// others are made without the network.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstring>
 
-#include "gnn/physics/solver/lanes.h"
+#include "gnn/physics/energy/lanes.h"
 
 namespace cloth {
 

@@ -77,7 +77,7 @@ struct PotentialValue {
 class IncrementalPotential {
  public:
     /// Keeps a reference to `garment`.
-    /// @throws ArgumentError if a setting is negative or not finite
+    /// @throws ArgumentError if a setting is out of range
     explicit IncrementalPotential(const Garment& garment, PotentialSettings settings = {});
 
     /// Fixes everything that does not depend on the unknown x. `contacts` are the nearest points of

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <vector>
 
+#include "gnn/physics/energy/lanes.h"
 #include "gnn/physics/solver/affine_fields.h"
 #include "gnn/physics/solver/contact_hessian.h"
 #include "gnn/physics/solver/crew.h"
-#include "gnn/physics/solver/lanes.h"
 
 namespace cloth {
 

@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "gnn/physics/energy/lanes.h"
 #include "gnn/physics/energy/strain.h"
 #include "gnn/physics/solver/crew.h"
-#include "gnn/physics/solver/lanes.h"
 #include "gnn/physics/solver/quasi_newton_system.h"
 
 namespace cloth {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "gnn/physics/solver/lanes.h"
+#include "gnn/physics/energy/lanes.h"
 #include "gnn/physics/solver/supernodal_cholesky.h"
 
 namespace cloth {

@@ -13,8 +13,8 @@ namespace cloth {
 
 /// When the iterations of a minimisation end.
 struct IterationLimits {
-    int iterations =
-        10;  ///< at most, 0 to 10000; each costs one energy and, in contact, 8 solves with P
+    int iterations = 10;  ///< at most, 0 to 10000; each costs one energy and, in contact, a solve
+                          ///< with P more than contact_cg_iterations
     int least_iterations = 0;  ///< but not fewer than these, 0 to 10000
     double tolerance = 0.0;    ///< stop at this residual, 0 to 1e6; 0: run all iterations
     double least_gain = 0.0;   ///< or when MinimiseReport::gain is below this (m), 0 to 1; 0: never

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "gnn/physics/solver/lanes.h"
+#include "gnn/physics/energy/lanes.h"
 
 namespace cloth {
 namespace {

@@ -55,10 +55,10 @@ struct EmbeddedStepperSettings {
 /// such as fine wrinkles, is kept as an offset and fades, so that nothing jumps.
 ///
 /// Of the outside, the proxy has the obstacles, and at its places means of the accelerations, of
-/// goals, of pin targets, and all limbs that are ignored around them. Reports: iterations, gain,
-/// convergence, entry and tangles are the proxy's; penetration, goals and ignored limbs are those
-/// of the fine garment; the residual is left out. It gives no internal forces: those of the fine
-/// garment do not move it.
+/// goals, of pin targets, and all limbs that are ignored around them. Reports: iterations are those
+/// of both; gain, convergence, entry and tangles are the proxy's; penetration, goals and ignored
+/// limbs are those of the fine garment; the residual is left out. It gives no internal forces:
+/// those of the fine garment do not move it.
 class EmbeddedStepper : public Stepper {
  public:
     /// @param fine   a reference is kept

@@ -7,8 +7,8 @@
 
 namespace cloth {
 
-/// Says where the minimisation of a whole step starts: a network, or a test's stand-in for one.
-/// Without one a step starts at the guess, the projected extrapolation.
+/// Says where the minimisation of a step, or of a small step of its length, starts: a network, or a
+/// test's stand-in for one. Without one a step starts at the guess, the projected extrapolation.
 class StepStart {
  public:
     virtual ~StepStart() = default;
