@@ -20,8 +20,12 @@ namespace cloth {
 /// owed there, and where bodies are anchored. Where no body can be pushed, what would lift it by a
 /// hundredth of its edges is paid when it becomes motion, all else by any motion.
 ///
-/// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there only
-/// what is much more than that is taken.
+/// Where bodies are anchored, so much may wait, and what was lost lately may come back, for as much
+/// as would lift cloth and bodies by so little. Bullet's step of a body that falls loses energy:
+/// what holds the body up gives that back.
+///
+/// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there what
+/// is made is taken only where it has added up to more than that.
 ///
 /// A body that lies on something is pushed by the cloth on it and stopped by what it lies on, again
 /// and again. What it gained in the last step and lost since, it may gain in this one.
