@@ -85,9 +85,10 @@ double energyAt(const ClothStep& step, const EnergyBalance::Cloth& cloth, const 
            cloth.masses.dot(x * step.boundary.gravity);
 }
 
-/// What lifts so much mass (kg) by a hundredth of the cloth's edges (J).
-double smallLift(const ClothStep& step, double mass) {
-    return 0.01 * step.garment.mean_edge_length() * step.boundary.gravity.norm() * mass;
+/// What lifts the cloth by a hundredth of its edges (J).
+double smallLift(const ClothStep& step, const EnergyBalance::Cloth& cloth) {
+    return 0.01 * step.garment.mean_edge_length() * step.boundary.gravity.norm() *
+           cloth.masses.sum();
 }
 
 /// What a step of Bullet's loses of the energy of a body that falls (J): half m (g h)^2. What holds
@@ -95,14 +96,6 @@ double smallLift(const ClothStep& step, double mass) {
 double lostInFall(const EnergyBalance::Share& share, double length) {
     const double change = length * static_cast<double>(share.body->getGravity().length());
     return 0.5 * change * change / static_cast<double>(share.body->getInvMass());
-}
-
-/// Of the bodies that are anchored (kg).
-double hangingMass(const std::vector<EnergyBalance::Share>& shares) {
-    double mass = 0.0;
-    for (const auto& share : shares)
-        if (share.anchored) mass += 1.0 / static_cast<double>(share.body->getInvMass());
-    return mass;
 }
 
 /// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
@@ -140,6 +133,7 @@ EnergyBalance::Result EnergyBalance::settle(const ClothStep& step, const Cloth& 
 EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth& cloth,
                                              std::vector<Share>& shares) {
     constexpr double kForget = 1.0;  // s
+    constexpr double kLent = 0.3;    // of a small lift: what may come back of what was lost
     constexpr double kSlow = 0.5;    // m/s: motion of all of the cloth that nobody would miss
     constexpr double kTell = 10.0;   // times that energy
     const std::optional<double> energy = step.stepper.internal_energy(step.to.x);
@@ -173,18 +167,14 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     const double made = motion + stored + m_debt, owed = std::max(0.0, made);
     // Contacts that push coarse cloth stretch it a little, which seldom becomes motion. It is paid
     // where it does: taken at once, it would be all of slow motion, and cloth creep as in honey.
-    const double small = smallLift(step, cloth.masses.sum());
+    const double small = smallLift(step, cloth);
     const bool may_wait = shares.empty() && owed <= small;
-    double surplus = may_wait ? std::clamp(motion, 0.0, owed) : owed;
+    const double surplus = may_wait ? std::clamp(motion, 0.0, owed) : owed;
     m_debt = (owed - surplus) * std::exp(-step.length / kForget);
     // Of what cloth and bodies exchange as they swing, a part is in neither for a step. Taken
     // whenever it is back, it would be all of the motion where they turn round.
-    if (anchored) {
-        const double most = smallLift(step, cloth.masses.sum() + hangingMass(shares));
-        surplus = std::max(0.0, made - small);
-        m_debt =
-            made > 0.0 ? made - surplus : std::max(made, -most) * std::exp(-step.length / kForget);
-    }
+    if (anchored && made < 0.0)
+        m_debt = std::max(made, -kLent * small) * std::exp(-step.length / kForget);
     Result result;
     if (!(surplus > (piled ? little : 0.0))) {
         if (piled) m_debt = surplus * std::exp(-step.length / kForget);

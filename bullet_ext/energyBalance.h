@@ -20,9 +20,8 @@ namespace cloth {
 /// owed there, and where bodies are anchored. Where no body can be pushed, what would lift it by a
 /// hundredth of its edges is paid when it becomes motion, all else by any motion.
 ///
-/// Where bodies are anchored, so much may wait, and what was lost lately may come back, for as much
-/// as would lift cloth and bodies by so little. Bullet's step of a body that falls loses energy:
-/// what holds the body up gives that back.
+/// Where bodies are anchored, what was lost lately may come back, a third of so much. Bullet's step
+/// of a body that falls loses energy: what holds the body up gives that back.
 ///
 /// Bullet pushes bodies that lie in hanging cloth about all the time, and that is work: there what
 /// is made is taken only where it has added up to more than that.
