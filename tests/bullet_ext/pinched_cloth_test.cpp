@@ -286,8 +286,10 @@ Swing swing(double rate, double mass, int anchors, double seconds) {
 // A pendulum of 0.8 m takes 0.9 s for each way. It stopped for good where it turned round: what
 // Bullet's steps lose of a fall, and cloth that bears a body gives back, was taken for made.
 TEST(AnchoredBodies, ABodyOnAHangingSheetIsAPendulum) {
-    for (const double rate : {30.0, 60.0, 240.0})
+    constexpr double kRates[] = {60.0, 30.0, 240.0};
+    for (int k = 0; k < fewer_if_sanitized(3); ++k)
         for (const double mass : {0.02, 0.2, 2.0}) {
+            const double rate = kRates[k];
             const bool is_damped = rate < 50.0 && mass < 0.1;  // a light body, by long steps
             if (is_damped) continue;
             SCOPED_TRACE(std::to_string(rate) + " Hz, " + std::to_string(mass) + " kg");
