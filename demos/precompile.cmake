@@ -1,6 +1,6 @@
 # Most of the time to compile a file here goes into the headers of Eigen, GoogleTest and the standard
 # library. They are compiled once for each set of flags: with and without OpenMP, with and without
-# GoogleTest.
+# GoogleTest, for shared libraries too or for programs alone.
 find_package(nlohmann_json REQUIRED)
 if(CLOTH_BUILD_TESTS)
   find_package(GTest REQUIRED)
@@ -57,12 +57,16 @@ endfunction()
 function(cloth_precompile target)
   get_target_property(type ${target} TYPE)
   get_target_property(own ${target} PRECOMPILE_HEADERS)
+  get_target_property(pic ${target} POSITION_INDEPENDENT_CODE)
   cloth_links(${target} cloth_core common)
   cloth_links(${target} CGAL::CGAL rounding)  # both have flags of their own
   cloth_links(${target} cloth_train torch)
   cloth_links(${target} OpenMP::OpenMP_CXX threads)
   if(NOT type MATCHES "^(STATIC_LIBRARY|OBJECT_LIBRARY|EXECUTABLE)$" OR own OR rounding OR NOT common)
     return()
+  endif()
+  if(pic AND type STREQUAL "EXECUTABLE")
+    return()  # -fPIE, which no library here has
   endif()
   if(torch)
     target_precompile_headers(${target} REUSE_FROM cloth_train)
@@ -78,11 +82,17 @@ function(cloth_precompile target)
   if(threads)
     string(APPEND kind _threads)
   endif()
+  if(pic)
+    string(APPEND kind _pic)
+  endif()
   cloth_skip_special_files(${target})
   if(NOT TARGET cloth_${kind})
     file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled/${kind}.cpp CONTENT "")
     add_library(cloth_${kind} OBJECT ${PROJECT_BINARY_DIR}/precompiled/${kind}.cpp)
     target_precompile_headers(cloth_${kind} PRIVATE ${headers})
+    if(pic)
+      set_target_properties(cloth_${kind} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    endif()
     target_link_libraries(cloth_${kind} PRIVATE Eigen3::Eigen nlohmann_json::nlohmann_json cloth_flags)
     target_compile_definitions(cloth_${kind} PRIVATE
       $<TARGET_PROPERTY:cloth_core,INTERFACE_COMPILE_DEFINITIONS>)

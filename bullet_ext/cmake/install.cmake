@@ -21,7 +21,7 @@ endif()
 # Libraries of others, as targets link them: what find_package() calls them, and how pkg-config's
 # users link them. PkgConfig::NAME needs no entry.
 set(package_of_Eigen3::Eigen Eigen3)
-set(pc_requires_of_Eigen3::Eigen eigen3)
+set(pc_requires_of_Eigen3::Eigen "eigen3 >= 3.4")
 set(package_of_OpenMP::OpenMP_CXX OpenMP)
 list(TRANSFORM OpenMP_CXX_LIB_NAMES PREPEND "-l" OUTPUT_VARIABLE pc_libs_of_OpenMP::OpenMP_CXX)
 set(package_of_fcl fcl)
@@ -62,6 +62,12 @@ function(cloth_component component)
     endif()
     list(APPEND kept ${link})
   endforeach()
+  # Shared libraries of users link these, too. The compiler need not expect that they replace our functions:
+  # it inlines as it does for a program.
+  if(NOT DEFINED CMAKE_POSITION_INDEPENDENT_CODE)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_compile_options(${target} PRIVATE -fno-semantic-interposition)
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${component}
                                              INTERFACE_LINK_LIBRARIES "${kept}")
   install(TARGETS ${target} EXPORT FastCloth-${component}
@@ -73,11 +79,11 @@ function(cloth_component component)
 set(FastCloth_${component}_packages ${packages})\n" PARENT_SCOPE)
 
   get_target_property(definitions ${target} INTERFACE_COMPILE_DEFINITIONS)
-  list(FILTER definitions INCLUDE REGEX "^[A-Z_]+=[0-9]+$")
+  list(FILTER definitions INCLUDE REGEX "^[A-Za-z_]+=[A-Za-z0-9]+$")
   list(TRANSFORM definitions PREPEND "-D")
   list(JOIN definitions " " PC_DEFINITIONS)
   list(REMOVE_DUPLICATES pc_requires)
-  list(JOIN pc_requires " " PC_REQUIRES)
+  list(JOIN pc_requires ", " PC_REQUIRES)
   list(JOIN pc_libs " " PC_LIBS)
   set(pc ${PROJECT_BINARY_DIR}/fastcloth-${component}.pc)
   configure_file(${PROJECT_SOURCE_DIR}/bullet_ext/cmake/component.pc.in ${pc} @ONLY)

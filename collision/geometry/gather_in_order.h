@@ -3,6 +3,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace cloth {
@@ -16,8 +17,10 @@ template <typename Item, typename Work>
 void gather_in_order(int parts, int threads, std::vector<std::vector<Item>>& buffers,
                      std::vector<Item>& all, const Work& work) {
     if (buffers.size() < static_cast<size_t>(parts)) buffers.resize(static_cast<size_t>(parts));
-    const int workers = threads > 0 ? threads : omp_get_max_threads();
+    [[maybe_unused]] const int workers = threads > 0 ? threads : omp_get_max_threads();
+#ifdef _OPENMP  // programs that include this may do without
 #pragma omp parallel for schedule(dynamic, 1) num_threads(workers) if (workers > 1 && parts > 3)
+#endif
     for (int part = 0; part < parts; ++part) {
         buffers[static_cast<size_t>(part)].clear();
         work(part, buffers[static_cast<size_t>(part)]);

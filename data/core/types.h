@@ -3,13 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-// Other layouts crash: memory that one side allocates is freed by the other. The definitions come
-// with the CMake targets and with `pkg-config --cflags fastcloth`.
-static_assert(EIGEN_DEFAULT_ALIGN_BYTES == 64 && EIGEN_MAX_STATIC_ALIGN_BYTES == 16 &&
-                  EIGEN_MALLOC_ALREADY_ALIGNED == 0,
-              "FastCloth needs -DEIGEN_MAX_ALIGN_BYTES=64 -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 in "
-              "every file that includes it: link its CMake targets, or add the flags of "
-              "`pkg-config --cflags fastcloth`");
+#include "data/core/eigen_layout.h"
 
 namespace cloth {
 

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <string_view>
 #include <vector>
+
+#include "data/core/types.h"
 
 namespace cloth {
 

@@ -1,0 +1,52 @@
+# Installed headers include what they use, and give no warnings: each that reads no Eigen is compiled alone.
+# Eigen brings most of the standard library's headers, and takes a second: the others only with -DALL=ON.
+#   cmake -DPREFIX=... -DWORK=... -DCXX=... [-DALL=ON] -P headers.cmake
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+file(REMOVE_RECURSE ${WORK})
+set(root ${PREFIX}/include/fastcloth)
+file(GLOB_RECURSE headers RELATIVE ${root} ${root}/*.h)
+
+# reads_eigen(HEADER OUT): whether it, or a header that it includes, includes Eigen.
+function(reads_eigen header out)
+  get_property(known GLOBAL PROPERTY eigen_${header} SET)
+  if(NOT known)
+    file(STRINGS ${root}/${header} lines REGEX "^#include")
+    set(found FALSE)
+    foreach(line IN LISTS lines)
+      if(line MATCHES "<Eigen/")
+        set(found TRUE)
+      elseif(line MATCHES "\"(.*)\"" AND NOT found)
+        reads_eigen(${CMAKE_MATCH_1} found)
+      endif()
+    endforeach()
+    set_property(GLOBAL PROPERTY eigen_${header} ${found})
+  endif()
+  get_property(found GLOBAL PROPERTY eigen_${header})
+  set(${out} ${found} PARENT_SCOPE)
+endfunction()
+
+run("flags" works sh -c "pkg-config --cflags fastcloth fastcloth-body fastcloth-files")
+separate_arguments(flags UNIX_COMMAND "${run_output}")
+set(count 0)
+foreach(header IN LISTS headers)
+  reads_eigen(${header} eigen)
+  if(eigen AND NOT ALL)
+    continue()
+  endif()
+  file(WRITE ${WORK}/alone.cpp "#include \"${header}\"\n")
+  run("${header}" works ${CXX} -std=c++17 -fsyntax-only -Wall -Wextra -Werror -Wno-ignored-attributes
+      ${flags} ${WORK}/alone.cpp)
+  math(EXPR count "${count} + 1")
+endforeach()
+if(count LESS 30)
+  message(FATAL_ERROR "only ${count} headers were compiled")
+endif()
+
+# What shows Eigen's types refuses files that have another Eigen: data/core/types.h does.
+list(REMOVE_ITEM headers data/core/types.h data/core/eigen_layout.h)
+foreach(header IN LISTS headers)
+  file(STRINGS ${root}/${header} lines REGEX "^#include")
+  if(lines MATCHES "<Eigen/" AND NOT lines MATCHES "\"(data|collision|gnn)/")
+    message(FATAL_ERROR "${header} includes Eigen without data/core/types.h, which checks how it is compiled")
+  endif()
+endforeach()
