@@ -17,6 +17,7 @@
 #include "data/core/errors.h"
 #include "data/files/garment_assets.h"
 #include "demos/local_processes.h"
+#include "demos/train_recipe.h"
 #include "demos/training_program.h"
 #include "gnn/train/process_group.h"
 #include "gnn/train/trainer.h"
@@ -26,55 +27,12 @@ namespace {
 struct Options {
     cloth::TrainerSettings settings;
     std::string variant = "fast", recipe = "kicks", loss;
-    int width = 32, levels = 2, nice = 0;
+    int width = 32, nice = 0;
     double rate = 30.0;  ///< 1/s
-    std::optional<int> steps, sampled_edges, batch;
+    std::optional<int> steps, levels, sampled_edges, batch;
     int processes = 1;
     bool force_features = true, resume = false;
-    std::map<std::string, double> recipe_values;  ///< of recipe_options
-};
-
-using cloth::Recipe;
-
-struct RecipeOption {
-    const char *name, *type, *description;
-    void (*set)(Recipe&, double);
-};
-
-const RecipeOption recipe_options[] = {
-    {"--learning-rate", "R", "", [](Recipe& r, double v) { r.base_rate = v; }},
-    {"--mean-share", "P",
-     "share of the iterations so far over which parameters are averaged for saving; 0: the last",
-     [](Recipe& r, double v) { r.mean_share = v; }},
-    {"--position-weight", "W", "of the error of position in the loss",
-     [](Recipe& r, double v) { r.position_weight = v; }},
-    {"--target-iterations", "K",
-     "quasi-Newton iterations to the target of the loss, a healed state too",
-     [](Recipe& r, double v) { r.target_iterations = static_cast<int>(v); }},
-    {"--loss-iterations", "K", "quasi-Newton iterations between the network's answer and the loss",
-     [](Recipe& r, double v) { r.loss_iterations = static_cast<int>(v); }},
-    {"--heal", "K", "quasi-Newton iterations of warm-up frames",
-     [](Recipe& r, double v) { r.heal_iterations = static_cast<int>(v); }},
-    {"--healed-first", "P", "share of next states that are the solver's, at the start",
-     [](Recipe& r, double v) { r.heal_first = v; }},
-    {"--healed-last", "P", "the same at the end", [](Recipe& r, double v) { r.heal_last = v; }},
-    {"--own-refined", "P", "share of the network's own next states that iterations refine",
-     [](Recipe& r, double v) { r.own_refined = v; }},
-    {"--own-iterations", "K", "these iterations",
-     [](Recipe& r, double v) { r.own_iterations = static_cast<int>(v); }},
-    {"--kicks", "P", "share of the iterations that perturb their scene",
-     [](Recipe& r, double v) { r.kicks.share = v; }},
-    {"--skinned", "P",
-     "share of garment scenes that start posed with the body in the midst of a motion",
-     [](Recipe& r, double v) { r.skinned.share = v; }},
-    {"--skinned-at-rest", "P", "share of these that start without velocity",
-     [](Recipe& r, double v) { r.skinned.at_rest = v; }},
-    {"--skinned-noise", "M", "noise of their positions (m)",
-     [](Recipe& r, double v) { r.skinned.noise = v; }},
-    {"--noise", "M", "noise of positions, for single steps (m)",
-     [](Recipe& r, double v) { r.noise = v; }},
-    {"--rollout", "N", "steps of the network from its own states in an iteration",
-     [](Recipe& r, double v) { r.max_rollout = static_cast<int>(v); }},
+    std::map<std::string, double> recipe_values;  ///< of recipe_options()
 };
 
 /// @throws ArgumentError if one is not found or, with proxies, has none: before hours are spent on
@@ -93,6 +51,9 @@ void choose_garments(const std::vector<std::string>& names, cloth::SceneSettings
                 "take another of the wardrobe, or leave --proxies out");
         cloth::load_garment_start(name);
     }
+    if (!names.empty() && scenes.garment_share == 0.0)
+        throw cloth::ArgumentError("--garment", "has no effect with --garment-share 0",
+                                   "leave one of them out");
     if (!names.empty()) scenes.garments = names;
 }
 
@@ -110,7 +71,9 @@ Options parse(int count, char** arguments) {
     add("--variant", options.variant, "NAME",
         "baseline, sampling, reduction or fast; with coarse levels hood, hood_fast or bistride "
         "(fast)");
-    add("--width", options.width, "D", "latent size, a multiple of 16 trains fastest (32)");
+    add("--width", options.width, "D",
+        "latent size, 4 to 512; other than multiples of 16 train slowly, without validation "
+        "(--validation-share 0), and for LibTorch alone (32)");
     add("--steps", options.steps, "L", "message passing steps (8, with coarse levels 15)");
     add("--levels", options.levels, "K",
         "coarse levels of hood, hood_fast and bistride, 1 to 6; takes 2 K + 1 steps or more (2)");
@@ -124,7 +87,8 @@ Options parse(int count, char** arguments) {
     add("--recipe", options.recipe, "NAME",
         "kicks: perturbed states, error of position in the loss; own: goes on from weights of "
         "kicks, on the network's own states; quick; paper: FastClothGNN's (kicks)");
-    add("--weights", settings.start_weights, "FILE", "start from these weights");
+    add("--weights", settings.start_weights, "FILE",
+        "start from these weights; a training that is resumed has its own");
     add("--minutes", settings.minutes, "M", "wall time of the training");
     add("--iterations", settings.iterations, "N", "end after so many iterations");
     add("--batch", options.batch, "N",
@@ -133,7 +97,8 @@ Options parse(int count, char** arguments) {
         "train with so many on this machine, 1 to 256; on several machines start each with RANK, "
         "WORLD_SIZE, MASTER_ADDR and MASTER_PORT instead (1)");
     add("--pool", settings.pool, "N", "scenes trained on in turn, for each of the batch (40)");
-    add("--garment-share", settings.scenes.garment_share, "P", "share of garment scenes (0.65)");
+    add("--garment-share", settings.scenes.garment_share, "P",
+        "share of garment scenes; 0: sheets alone (0.65)");
     add("--garment", garments, "A,B,...",
         "train on these garments alone: names of data/assets/garments, or files of yours")
         ->delimiter(',')
@@ -152,7 +117,7 @@ Options parse(int count, char** arguments) {
 
     const char* const recipe = "Instead of the recipe's";
     add("--loss", options.loss, "NAME", "energy, log or both", recipe);
-    for (const RecipeOption& option : recipe_options)
+    for (const cloth::RecipeOption& option : cloth::recipe_options())
         app.add_option_function<double>(
                option.name,
                [&options, &option](double value) { options.recipe_values[option.name] = value; },
@@ -170,7 +135,9 @@ Options parse(int count, char** arguments) {
         ->delimiter(',')
         ->take_all();
     add("--validation-garments", settings.rollouts.garments, "A,B,...",
-        "of those trained on (tshirt,pants_1000,dress_1000)", validation)
+        "of those trained on (tshirt,pants_1000,dress_1000, or those of them that are, or the last "
+        "of --garment)",
+        validation)
         ->delimiter(',')
         ->take_all();
     add("--validation-frames", settings.rollouts.frames, "N", "of a rollout (90)", validation);
@@ -195,7 +162,11 @@ cloth::ModelConfig model_config(const Options& options) {
         ModelConfig::variant_named(options.variant).pooling == cloth::Pooling::none;
     const int steps = options.steps.value_or(is_flat ? 8 : 15);
     cloth::check_range("--steps", steps, 1, 64);
-    ModelConfig config = ModelConfig::variant_named(options.variant, steps, options.levels);
+    if (is_flat && options.levels)
+        throw cloth::ArgumentError("--levels", "is for variants with coarse levels",
+                                   "take --variant hood, hood_fast or bistride");
+    ModelConfig config =
+        ModelConfig::variant_named(options.variant, steps, options.levels.value_or(2));
     if (!options.sampled_edges) return config;
     if (config.sampled_edges == 0)
         throw cloth::ArgumentError("--sampled-edges", "is for variants that sample neighbours",
@@ -216,10 +187,7 @@ cloth::TrainerSettings make_settings(const Options& options, int processes) {
     settings.model = cloth::ModelConfig::from_json(settings.model.to_json(), "command line");
     settings.recipe = cloth::Recipe::named(options.recipe, options.width);
     if (!options.loss.empty()) settings.recipe.loss = cloth::loss_named(options.loss);
-    for (const RecipeOption& option : recipe_options) {
-        const auto given = options.recipe_values.find(option.name);
-        if (given != options.recipe_values.end()) option.set(settings.recipe, given->second);
-    }
+    cloth::set_recipe(options.recipe_values, settings.recipe);
     return settings;
 }
 

@@ -27,11 +27,25 @@ static void lower_own_session(int nice) {
     if (getsid(0) == getpid()) std::ofstream("/proc/self/autogroup") << nice;
 }
 
-void begin_training(const TrainingProgram& program) {
-    if (program.writes && !program.resume &&
-        std::filesystem::exists(program.out + "/checkpoint.pt"))
-        throw ArgumentError(program.out, "has a training already",
+/// What would be overwritten is somebody's training, even without its checkpoint. A training that
+/// was ended before its first checkpoint leaves metrics alone, and begins anew with --resume.
+static void check_folder(const std::string& out, bool resume) {
+    const auto has = [&](const char* file) { return std::filesystem::exists(out + "/" + file); };
+    if (has("checkpoint.pt")) {
+        if (resume) return;
+        throw ArgumentError(out, "has a training already",
                             "give --resume to go on with it, or another --out");
+    }
+    for (const char* file : {"weights.safetensors", "metrics.csv", "rollouts.csv"})
+        if (has(file) && (!resume || std::string(file) == "weights.safetensors"))
+            throw ArgumentError(
+                out,
+                std::string("has ") + file + " of a training already, without its checkpoint.pt",
+                "give another --out, or bring the checkpoint back for --resume");
+}
+
+void begin_training(const TrainingProgram& program) {
+    if (program.writes) check_folder(program.out, program.resume);
     check_range("--nice", program.nice, 0, 19);
     if (program.nice > 0 && setpriority(PRIO_PROCESS, 0, program.nice) != 0)
         std::cerr << program.name << ": the priority stays as it is: " << std::strerror(errno)

@@ -16,9 +16,8 @@ struct TrainingProgram {
 };
 
 /// Lowers the priority.
-/// @throws ArgumentError if the folder has a training already that is not to be resumed: one of
-/// days
-///         must not be lost because an option was forgotten; or if `nice` is out of range
+/// @throws ArgumentError if the folder has files of a training that would be overwritten: one of
+///         days must not be lost because an option was forgotten; or if `nice` is out of range
 void begin_training(const TrainingProgram& program);
 
 /// True after Ctrl-C or SIGTERM, from the first call on; the second signal ends the program at

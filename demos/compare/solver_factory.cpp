@@ -140,6 +140,20 @@ std::string weights_folder(const std::string& folder) {
     return folder.empty() ? asset_path("weights") : folder;
 }
 
+/// Marks in the names of solvers, which a network's name cannot have.
+bool has_mark(const std::string& network) {
+    return network.find_first_of("~+@") != std::string::npos;
+}
+
+/// A file of that name would be taken for another solver with a proxy, iterations or a limit.
+void refuse_file_of(const std::string& name, const std::string& folder) {
+    if (folder.empty() || !has_mark(name)) return;
+    const std::string file = folder + "/" + name + ".safetensors";
+    if (std::filesystem::exists(file))
+        throw UsageError("solver " + name +
+                         ": ~, + and @ have a meaning in solvers' names; rename " + file);
+}
+
 std::unique_ptr<Stepper> make_skinning(const std::string& name, const ComparisonScene& scene,
                                        const SolverSettings& settings) {
     if (name != "skinning" && name != "skinning-raw")
@@ -264,7 +278,8 @@ std::vector<std::string> networks_in(const std::string& folder) {
     std::error_code unreadable;
     for (const auto& entry :
          std::filesystem::directory_iterator(weights_folder(folder), unreadable))
-        if (entry.path().extension() == ".safetensors") names.push_back(entry.path().stem());
+        if (entry.path().extension() == ".safetensors" && !has_mark(entry.path().stem()))
+            names.push_back(entry.path().stem());
     const auto of_detail = [](const std::string& name) {
         const std::string suffix = "_detail";
         return name.size() > suffix.size() &&
@@ -305,6 +320,7 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings) {
+    refuse_file_of(name, settings.weights);
     const size_t limit = name.rfind('@');
     if (limit != std::string::npos) {
         const int ms = whole_number("solver " + name, name.substr(limit + 1), 1, 100000);

@@ -81,7 +81,9 @@ ordered_json train(const Job& job, int iterations, const SeriesSettings& setting
           std::string("--references"), settings.trainings + "/references", std::string("--out"),
           job.folder})
         command.push_back(argument);
-    if (goes_on) command.push_back("--resume");
+    // One that was ended before its first checkpoint has left metrics, and begins anew.
+    if (goes_on || std::filesystem::exists(job.folder + "/metrics.csv"))
+        command.push_back("--resume");
     const ChildResult child = run_child(command, log);
     if (child.interrupted)
         throw LoadError(log, "", "the training was interrupted", "the same command goes on");

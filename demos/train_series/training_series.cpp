@@ -28,7 +28,8 @@ TrainingSeries states() {
              "kicks, next states are the network's own",
              {"--healed-first", "0", "--healed-last", "0"}},
             {"rollouts",
-             "kicks, up to 3 steps from own states in an iteration",
+             "kicks, a second step from own states in iterations after the first 3,000, a third "
+             "after 6,000",
              {"--rollout", "3"}},
             {"energy alone",
              "kicks, without the error of position in the loss",

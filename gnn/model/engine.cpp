@@ -11,6 +11,7 @@
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "gnn/model/engine_workspace.h"
+#include "gnn/model/graph_fit.h"
 
 // The vertices are cut into groups. Within a message step everything that a group writes belongs to
 // its own vertices: its incoming edges, its world edges, its node latents. The only thing it reads
@@ -392,8 +393,9 @@ void Engine::prepare(const ClothGraph& graph) {
 
 void Engine::predict(const ClothGraph& graph, const Features& features, Points& out) {
     out.resize(graph.vertex_count, 3);
-    if (features.node.rows() != graph.vertex_count || features.edge.rows() != graph.edge_count() ||
-        static_cast<int>(graph.coarse.size()) != coarsest_level(config().level_schedule)) {
+    const bool is_known = m_topology && m_topology->graph_id == graph.id;
+    if ((!is_known && !is_graph_of(graph, config())) ||
+        !are_features_of(features, graph, config())) {
         out.setConstant(std::numeric_limits<double>::quiet_NaN());
         return;
     }

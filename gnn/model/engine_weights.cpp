@@ -5,6 +5,7 @@
 #include <string>
 
 #include "data/core/errors.h"
+#include "gnn/model/weights_check.h"
 
 namespace cloth {
 
@@ -136,6 +137,10 @@ EngineWeights::EngineWeights(const Weights& weights, Precision precision)
                                 std::to_string(m_config.hidden_layers) + " hidden layers",
                             "the engine takes widths that are multiples of 16 and two hidden "
                             "layers; run others with LibTorch");
+    const TensorProblem problem = find_problem(weights);
+    if (!problem.place.empty())
+        throw ArgumentError("weights of '" + m_name + "', " + problem.place, problem.text,
+                            "give the tensors of parameter_shapes() and statistics_shapes()");
     Packer packer(weights, precision);
     const auto walk = [&] {
         const auto encoder = [&packer](const std::string& name, const std::string& statistics) {

@@ -19,8 +19,8 @@ namespace cloth {
 /// does to an acceleration is a matter of the weights; gnn/model/RESULTS.md has the shipped ones.
 class EngineWeights {
  public:
-    /// Copies what it needs. @throws ArgumentError if the width is no multiple of 16 or there are
-    /// not two hidden layers
+    /// Copies what it needs. @throws ArgumentError if the width is no multiple of 16, there are
+    /// not two hidden layers, or a tensor is missing, misshaped or not finite
     explicit EngineWeights(const Weights& weights, Precision precision = Precision::float32);
     EngineWeights(const EngineWeights&) = delete;
     EngineWeights& operator=(const EngineWeights&) = delete;

@@ -23,7 +23,8 @@ class Predictor {
 
     /// One evaluation. The predicted position of vertex i is base_i + scale * out_i.
     /// @param graph  of the garment, built with config().graph_settings()
-    /// @param out    |V| x 3: scaled accelerations; not finite if the evaluation failed
+    /// @param out    |V| x 3: scaled accelerations; not finite if the evaluation failed, or if
+    ///               graph or features are those of other settings
     virtual void predict(const ClothGraph& graph, const Features& features, Points& out) = 0;
 };
 

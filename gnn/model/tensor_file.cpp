@@ -1,11 +1,14 @@
 #include "gnn/model/tensor_file.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <utility>
 
 #include "data/core/errors.h"
 #include "data/core/printable.h"
@@ -53,8 +56,14 @@ RawFile read_raw(const std::string& file) {
     return raw;
 }
 
+/// Bytes [begin, end) behind the header that a tensor takes.
+struct Place {
+    std::uint64_t begin, end;
+    std::string name;
+};
+
 WeightTensor read_tensor(const RawFile& raw, const json& entry, const std::string& place,
-                         const std::string& file) {
+                         const std::string& file, std::vector<Place>& used) {
     WeightTensor tensor;
     std::uint64_t begin = 0, end = 0;
     try {
@@ -77,7 +86,28 @@ WeightTensor read_tensor(const RawFile& raw, const json& entry, const std::strin
         throw LoadError(file, place, "has a size that does not fit its shape", export_again);
     tensor.data.resize((end - begin) / sizeof(float));
     std::memcpy(tensor.data.data(), raw.bytes.data() + begin, end - begin);
+    used.push_back({begin, end, place});
     return tensor;
+}
+
+/// The format asks for tensors one behind the other, to the end of the file: what lies between them
+/// or in two of them was written wrongly.
+void check_places(std::vector<Place> used, size_t bytes, const std::string& file) {
+    std::sort(used.begin(), used.end(),
+              [](const Place& a, const Place& b) { return a.begin < b.begin; });
+    std::uint64_t end = 0;
+    for (const Place& place : used) {
+        if (place.begin != end)
+            throw LoadError(file, place.name,
+                            place.begin < end ? "shares bytes with another tensor"
+                                              : "does not begin where the one before it ends",
+                            export_again);
+        end = place.end;
+    }
+    if (end != bytes)
+        throw LoadError(file, "",
+                        "has " + std::to_string(bytes - end) + " bytes behind its last tensor",
+                        export_again);
 }
 
 std::string make_header(const TensorFile& file) {
@@ -99,15 +129,17 @@ std::string make_header(const TensorFile& file) {
 TensorFile TensorFile::load(const std::string& file) {
     const RawFile raw = read_raw(file);
     TensorFile loaded;
+    std::vector<Place> used;
     for (const auto& [name, entry] : raw.header.items()) {
         if (name != "__metadata__") {
-            loaded.tensors[name] = read_tensor(raw, entry, "tensor " + printable(name), file);
+            loaded.tensors[name] = read_tensor(raw, entry, "tensor " + printable(name), file, used);
             continue;
         }
         if (!entry.is_object()) continue;
         for (const auto& [key, value] : entry.items())
             if (value.is_string()) loaded.metadata[key] = value.get<std::string>();
     }
+    check_places(std::move(used), raw.bytes.size(), file);
     return loaded;
 }
 
@@ -146,9 +178,12 @@ TensorProblem find_problem(const std::vector<TensorShape>& shapes,
             if (!std::isfinite(tensor.data[i]))
                 return {"tensor " + name, "element " + std::to_string(i) + " is not finite"};
     }
-    if (tensors.size() != shapes.size())
-        return {"tensors", "there are " + std::to_string(tensors.size()) +
-                               ", the configuration has " + std::to_string(shapes.size())};
+    if (tensors.size() == shapes.size()) return {};
+    std::set<std::string> known;
+    for (const TensorShape& shape : shapes) known.insert(shape.first);
+    for (const auto& [name, tensor] : tensors)
+        if (known.count(name) == 0)
+            return {"tensor " + printable(name), "is not one of the configuration"};
     return {};
 }
 

@@ -24,7 +24,8 @@ struct TensorFile {
     std::map<std::string, WeightTensor> tensors;
 
     /// @throws LoadError naming file, place and reason: truncated, no safetensors, an array of
-    ///         another type than F32, or one that does not fit its shape
+    ///         another type than F32, one that does not fit its shape, or bytes that belong to two
+    ///         arrays or to none
     static TensorFile load(const std::string& file);
 
     /// An entry of the metadata. @throws LoadError if there is none. @param file  named in errors

@@ -4,6 +4,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/printable.h"
+#include "gnn/model/weights_check.h"
 
 namespace cloth {
 
@@ -17,19 +18,18 @@ std::vector<TensorShape> expected_tensors(const ModelConfig& config) {
     return shapes;
 }
 
-TensorProblem find_problem(const ModelConfig& config,
-                           const std::map<std::string, WeightTensor>& tensors) {
-    const TensorProblem problem = find_problem(expected_tensors(config), tensors);
+}  // namespace
+
+TensorProblem find_problem(const Weights& weights) {
+    const TensorProblem problem = find_problem(expected_tensors(weights.config), weights.tensors);
     if (!problem.place.empty()) return problem;
-    for (const auto& [name, shape] : statistics_shapes(config)) {
+    for (const auto& [name, shape] : statistics_shapes(weights.config)) {
         if (name.find(".deviation") == std::string::npos) continue;
-        const TensorProblem bad = find_bad_divisor(name, tensors.at(name));
+        const TensorProblem bad = find_bad_divisor(name, weights.tensors.at(name));
         if (!bad.place.empty()) return bad;
     }
     return {};
 }
-
-}  // namespace
 
 Weights Weights::load(const std::string& file) {
     TensorFile raw = TensorFile::load(file);
@@ -46,13 +46,13 @@ Weights Weights::load(const std::string& file) {
     weights.called = std::filesystem::path(file).stem().string();
     weights.config = ModelConfig::from_json(raw.entry("config", file), file);
     weights.tensors = std::move(raw.tensors);
-    const TensorProblem problem = find_problem(weights.config, weights.tensors);
+    const TensorProblem problem = find_problem(weights);
     if (!problem.place.empty()) throw LoadError(file, problem.place, problem.text, train_again);
     return weights;
 }
 
 void Weights::save(const std::string& file) const {
-    const TensorProblem problem = find_problem(config, tensors);
+    const TensorProblem problem = find_problem(*this);
     if (!problem.place.empty())
         throw ArgumentError(problem.place, problem.text, "save the tensors of the configuration");
     const TensorFile raw{{{"format", "fastcloth"},

@@ -4,8 +4,10 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "gnn/train/process_group.h"
+#include "gnn/train/setting_differences.h"
 
 namespace cloth {
 
@@ -20,9 +22,15 @@ bool load_checkpoint(
     const std::string& folder, const ProcessGroup& group, const c10::Device& device,
     const std::function<void(torch::serialize::InputArchive&, const std::string&)>& load);
 
-/// @param own  the settings of this training, as the entry "settings" of its checkpoints has them
+/// @param own     the settings of this training, as the entry "settings" of its checkpoints has
+/// them
+/// @param labels  of that text, to name what differs
 /// @throws LoadError if the archive is of another training
 void check_checkpoint_settings(torch::serialize::InputArchive& archive, const std::string& file,
-                               const std::string& own);
+                               const std::string& own, const std::vector<SettingLabel>& labels);
+
+/// @param differences  of the checkpoint from the training that is to go on with it
+/// @throws LoadError naming them if there are any
+void refuse_differences(const std::string& file, const std::vector<SettingDifference>& differences);
 
 }  // namespace cloth

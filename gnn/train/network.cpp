@@ -3,6 +3,9 @@
 #include <utility>
 
 #include "data/core/errors.h"
+#include "gnn/model/graph_fit.h"
+#include "gnn/model/weights_check.h"
+#include "gnn/train/setting_differences.h"
 
 namespace cloth {
 
@@ -95,6 +98,10 @@ std::shared_ptr<const GraphTables> Network::tables_of(const ClothGraph& graph) {
     if (m_tables.size() > 256)  // short-lived garments must not pile up
         for (auto kept = m_tables.begin(); kept != m_tables.end();)
             kept = m_uses - kept->second.last_use > kept_uses ? m_tables.erase(kept) : ++kept;
+    const auto known = m_tables.find(graph.id);
+    if (known == m_tables.end() && !is_graph_of(graph, m_config))
+        throw ArgumentError("graph", "has other levels or sampled edges than the network",
+                            "build it with config().graph_settings()");
     KeptTables& kept = m_tables[graph.id];
     if (!kept.tables) kept.tables = std::make_shared<const GraphTables>(graph, m_config, m_device);
     kept.last_use = ++m_uses;
@@ -265,10 +272,10 @@ Tensor Network::forward(const std::vector<const ClothGraph*>& graphs,
     std::vector<std::shared_ptr<const GraphTables>> parts;
     Blocks node_features;
     for (size_t k = 0; k < graphs.size(); ++k) {
-        if (static_cast<int>(graphs[k]->coarse.size()) != coarsest_level(m_config.level_schedule))
-            throw ArgumentError("graph", "has other levels than the network",
-                                "build it with config().graph_settings()");
         parts.push_back(tables_of(*graphs[k]));
+        if (!are_features_of(*features[k], *graphs[k], m_config))
+            throw ArgumentError("features", "are not those of the graph and of the network",
+                                "build them by FeatureBuilder with config().features");
         node_features.emplace_back(features[k]->node);
     }
     const auto joined = parts.size() == 1
@@ -339,8 +346,14 @@ Weights Network::export_weights() const {
 
 void Network::import_weights(const Weights& weights) {
     if (!(weights.config == m_config))
-        throw ArgumentError("weights", "are of another network configuration",
-                            "make the network from weights.config");
+        throw ArgumentError(
+            "weights of '" + weights.solver_name() + "'",
+            "are of another network: " + to_text(differences(weights.config, m_config), "this one"),
+            "make the network from weights.config");
+    const TensorProblem problem = find_problem(weights);
+    if (!problem.place.empty())
+        throw ArgumentError("weights of '" + weights.solver_name() + "', " + problem.place,
+                            problem.text, "give the tensors of the configuration");
     m_parameters.copy_from(weights.tensors);
     const auto read = [&](const std::string& name) {
         return FeatureStatistics{to_vector(weights.tensor("statistics." + name + ".mean")),

@@ -46,7 +46,8 @@ class Network {
     const NetworkStatistics& statistics() const { return m_statistics; }
 
     /// Scaled accelerations (|V| x 3, float32, on the network's device), with gradient.
-    /// @throws ArgumentError if the graph was not built with config().graph_settings()
+    /// @throws ArgumentError if the graph was not built with config().graph_settings(), or the
+    ///         features not for it with config().features
     torch::Tensor forward(const ClothGraph& graph, const Features& features);
     /// Several garments at once, as a GPU needs it to be busy: the rows of one behind those of the
     /// other, each as it would be alone. A GraphBatch gives the same; its tables would be made anew
@@ -56,7 +57,7 @@ class Network {
                           const std::vector<const Features*>& features);
 
     Weights export_weights() const;
-    /// @throws ArgumentError if the weights are of another configuration
+    /// @throws ArgumentError if the weights are of another configuration, or not those of theirs
     void import_weights(const Weights& weights);
 
  private:

@@ -5,44 +5,22 @@
 #include <filesystem>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "collision/proximity/metrics.h"
-#include "data/body/motion.h"
 #include "data/core/check_range.h"
-#include "data/core/paths.h"
 #include "gnn/model/make_proxy_cloth.h"
 #include "gnn/train/reference_file.h"
+#include "gnn/train/reference_fingerprint.h"
 #include "gnn/train/sheet_world.h"
+#include "gnn/train/validation_names.h"
 
 namespace cloth {
 
 namespace {
 
-std::vector<std::string> default_clips() {
-    if (const auto folder = shared_data_path("motions/validation")) return list_motions(*folder);
-    return {"01_01"};
-}
-
 double rms_distance(const Points& a, const Points& b) {
     return std::sqrt((a - b).rowwise().squaredNorm().mean());
-}
-
-/// Tells one garment at rest, its fabric and its time step (s) from another (FNV-1a).
-std::uint64_t fingerprint(const Garment& garment, const ClothState& start, double dt) {
-    std::uint64_t hash = 14695981039346656037ull;
-    const auto add = [&](const void* data, size_t bytes) {
-        for (size_t i = 0; i < bytes; ++i)
-            hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 1099511628211ull;
-    };
-    const auto add_points = [&](const Points& points) {
-        add(points.data(), sizeof(double) * static_cast<size_t>(points.size()));
-    };
-    add_points(garment.rest().vertices);
-    add_points(start.x);
-    const Fabric& fabric = garment.fabric();
-    for (const double value : {fabric.density, fabric.mu, fabric.lambda, fabric.bending, dt})
-        add(&value, sizeof value);
-    return hash;
 }
 
 }  // namespace
@@ -79,8 +57,8 @@ RolloutValidation::RolloutValidation(const SceneFactory& factory, const RolloutS
                                      const std::string& folder)
     : m_settings(settings), m_folder(folder) {
     m_settings.check();
-    if (m_settings.clips.empty()) m_settings.clips = default_clips();
-    if (factory.has_garments()) add_garments(factory);
+    check_clips(m_settings.clips);
+    add_garments(factory);
     if (m_settings.sheet_vertices == 0) return;
     for (const bool held : {true, false})
         m_scenes.push_back(std::make_unique<Scene>(
@@ -95,25 +73,21 @@ RolloutValidation::RolloutValidation(const SceneFactory& factory, const RolloutS
 RolloutValidation::~RolloutValidation() = default;
 
 void RolloutValidation::add_garments(const SceneFactory& factory) {
-    const std::vector<std::string> known = factory.garment_names();
-    std::vector<size_t> chosen;
-    for (const std::string& name : m_settings.garments) {
-        const auto found = std::find(known.begin(), known.end(), name);
-        if (found != known.end()) chosen.push_back(static_cast<size_t>(found - known.begin()));
-    }
-    if (chosen.empty()) chosen.push_back(known.size() - 1);
+    std::vector<std::string> known;
+    if (factory.has_garments()) known = factory.garment_names();
+    const std::vector<size_t> chosen = validated_garments(m_settings.garments, known);
+    if (!chosen.empty() && m_settings.clips.empty()) m_settings.clips = default_rollout_clips();
     for (const size_t index : chosen)
         for (const std::string& clip : m_settings.clips) {
             auto scene = factory.make_garment(1, clip, index);
             const int lead_in =
                 static_cast<int>(std::lround(AnimationSettings().lead_in / scene->dt()));
-            m_scenes.push_back(
-                std::make_unique<Scene>(Scene{std::filesystem::path(clip).stem().string(),
-                                              known[index],
-                                              std::move(scene),
-                                              lead_in,
-                                              {},
-                                              {}}));
+            m_scenes.push_back(std::make_unique<Scene>(Scene{clip_name(clip, m_settings.clips),
+                                                             known[index],
+                                                             std::move(scene),
+                                                             lead_in,
+                                                             {},
+                                                             {}}));
         }
 }
 
@@ -123,9 +97,11 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
     const Garment& garment = scene.scene->garment();
     const ClothState& start = scene.scene->parts().start;
     std::ostringstream name;
-    name << m_folder << '/' << scene.name << '_' << garment.vertex_count() << '_'
-         << m_settings.frames << '_' << m_settings.reference_iterations << '_' << std::hex
-         << fingerprint(garment, start, scene.scene->dt()) << ".pt";
+    const int frames = scene.lead_in + m_settings.frames;
+    name << m_folder << '/' << std::filesystem::path(scene.name).stem().string() << '_'
+         << garment.vertex_count() << '_' << m_settings.frames << '_'
+         << m_settings.reference_iterations << '_' << std::hex
+         << reference_fingerprint(*scene.scene, frames) << ".pt";
     const std::string file = name.str();
     if (load_reference(file, garment.vertex_count(), m_settings.frames, scene.reference,
                        scene.start_velocities))
@@ -137,7 +113,7 @@ bool RolloutValidation::find_reference(Scene& scene, const std::atomic<bool>& st
     ClothStepper stepper(garment, solver);
     ClothState state = start;
     std::vector<Points> trajectory;
-    for (int frame = 0; frame < scene.lead_in + m_settings.frames; ++frame) {
+    for (int frame = 0; frame < frames; ++frame) {
         if (stop) return false;
         if (frame == scene.lead_in) {
             trajectory = {state.x};

@@ -19,9 +19,9 @@ struct RolloutSettings {
     /// Motions, as load_motion_by_name() takes them; empty: those of the shared data folder's
     /// motions/validation, else 01_01.
     std::vector<std::string> clips;
-    /// Each is dressed on each clip; those that the factory has not are left out, and where it has
-    /// none of them its last one is taken.
-    std::vector<std::string> garments = {"tshirt", "pants_1000", "dress_1000"};
+    /// Each is dressed on each clip: names of garments that the factory has. Empty: tshirt,
+    /// pants_1000 and dress_1000, or those of them that it has, or else its last one.
+    std::vector<std::string> garments;
     int sheet_vertices = 1000;  ///< of the hanging sheet and of that on a sphere, 9 to 200,000; 0:
                                 ///< no sheets
     int frames = 90;            ///< after the lead-in, 1 to 10,000
@@ -41,7 +41,9 @@ struct RolloutSettings {
 struct RolloutResult {
     static constexpr double lost_distance = 0.3;  ///< (m)
 
-    std::string scene;    ///< motion, "sheet-hanging" or "sheet-sphere"
+    /// The motion, by the name of its file, or by its path if another has that name;
+    /// "sheet-hanging" or "sheet-sphere".
+    std::string scene;
     std::string garment;  ///< empty: a sheet
     bool is_sheet() const { return garment.empty(); }
     int iterations = 0;   ///< after the network
@@ -64,7 +66,8 @@ struct RolloutResult {
 class RolloutValidation {
  public:
     /// @param folder  of the references
-    /// @throws ArgumentError if a setting is out of range, LoadError for a motion that is not there
+    /// @throws ArgumentError if a setting is out of range or the factory has no garment of a name,
+    ///         LoadError for a motion that is not there
     RolloutValidation(const SceneFactory& factory, const RolloutSettings& settings,
                       const std::string& folder);
     ~RolloutValidation();

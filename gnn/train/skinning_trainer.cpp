@@ -343,7 +343,16 @@ bool SkinningTrainer::resume() {
 }
 
 void SkinningTrainer::load(torch::serialize::InputArchive& archive, const std::string& file) {
-    check_checkpoint_settings(archive, file, describe(m_settings, m_weights.config));
+    static const std::vector<SettingLabel> labels = {
+        {"loss", {"--loss"}},
+        {"sequences", {"--sequences"}},
+        {"frames", {"--frames"}},
+        {"rate", {"--learning-rate"}},
+        {"contact", {"first contact weight", "last contact weight"}},
+        {"seed", {"--seed"}},
+        {"motions", {"number of --motions"}},
+        {"validation", {"--validate-every", "--validation-motion"}}};
+    check_checkpoint_settings(archive, file, describe(m_settings, m_weights.config), labels);
     c10::IValue random;
     archive.read("random", random);
     std::istringstream(random.toStringRef()) >> m_random.engine();

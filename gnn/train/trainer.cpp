@@ -53,6 +53,10 @@ static TrainerSettings checked(TrainerSettings settings, const ProcessGroup& gro
     settings.validation.check();
     settings.rollouts.threads = settings.threads;
     settings.rollouts.check();
+    if (settings.validation_share > 0.0 && settings.model.width % 16 != 0)
+        throw ArgumentError("--width " + std::to_string(settings.model.width),
+                            "is no multiple of 16, as the engine takes that validates rollouts",
+                            "use such a width, or validate nothing: --validation-share 0");
     if (settings.references.empty()) settings.references = settings.out + "/references";
     std::filesystem::create_directories(settings.out);
     torch::set_num_threads(1);
@@ -80,11 +84,7 @@ Trainer::Trainer(TrainerSettings settings, ProcessGroup group)
       m_statistics(m_settings.model) {
     for (int k = m_group.rank(); k < m_settings.batch; k += m_group.size())
         m_lanes.emplace_back(k, m_factory, m_settings);
-    if (!m_settings.start_weights.empty()) {
-        Weights start = Weights::load(m_settings.start_weights);
-        start.config.dt = m_settings.model.dt;  // features and answers are in units of g dt^2
-        m_network.import_weights(start);
-    }
+    if (m_group.is_first() && m_settings.validation_share > 0.0) look_up_validation();
     if (m_settings.recipe.mean_share > 0.0) m_mean = m_network.parameters().flat().detach().clone();
     m_network.set_threads(m_settings.threads);
 }
@@ -276,6 +276,7 @@ void Trainer::WithMean::swap() {
 }
 
 Weights Trainer::weights() {
+    start();
     const WithMean mean(*this);
     return m_network.export_weights();
 }
@@ -343,8 +344,9 @@ void Trainer::end(Lane& lane) {
 /// What the lane adds to the next row of metrics.csv.
 void Trainer::count(const Lane& lane) {
     m_sums.loss += lane.loss.value;
-    m_sums.gaps.push_back(lane.loss.gap);
-    m_sums.errors.push_back(lane.loss.error);
+    const Recipe& recipe = m_settings.recipe;
+    if (recipe.loss == LossKind::both) m_sums.gaps.push_back(lane.loss.gap);
+    if (recipe.position_weight > 0.0) m_sums.errors.push_back(lane.loss.error);
     ++m_sums.count;
     if (lane.has_terms) m_sums.add(lane.terms);
     m_sums.kicks += lane.kicked ? 1 : 0;
@@ -352,6 +354,7 @@ void Trainer::count(const Lane& lane) {
 }
 
 double Trainer::iterate() {
+    start();
     if (!is_filled()) fill_pools(std::atomic<bool>{false});
     for (Lane& lane : m_lanes) begin(lane);
     const Recipe& recipe = m_settings.recipe;

@@ -44,7 +44,8 @@ struct TrainerSettings {
     std::int64_t freeze_statistics = 1000;  ///< iterations that shape the feature statistics, 0 to
                                             ///< 1e9
     std::string start_weights;  ///< file of weights to start from, of any time step; their feature
-                                ///< statistics stay as they are. Empty: random ones
+                                ///< statistics stay as they are. Read when the training starts, not
+                                ///< when it is resumed. Empty: random ones
     std::string references;     ///< folder of the rollouts' references; empty: in `out`
     /// Folder of checkpoint.pt, weights.safetensors, metrics.csv and rollouts.csv
     std::string out = "out/train";
@@ -71,17 +72,20 @@ struct TrainerSettings {
 class Trainer {
  public:
     /// @param group  the processes that train; one alone by default
-    /// @throws ArgumentError for settings out of range, LoadError if `out` cannot be written
+    /// What will be validated is looked up now: clips, garments and the folder of the references.
+    /// @throws ArgumentError for settings out of range, LoadError if `out` or the references cannot
+    ///         be written, or garments or motions cannot be loaded
     explicit Trainer(TrainerSettings settings, ProcessGroup group = {});
     ~Trainer();
 
     /// Goes on from the checkpoint in `out`. False: there is none.
-    /// @throws LoadError if it is broken or of another configuration
+    /// @throws LoadError if it is broken or of other settings, naming those that differ
     bool resume();
 
     /// Trains until the end or until `stop` is set; saves checkpoint and weights. Stopped, it does
     /// not validate any more. Of several processes all stop if one is to.
-    /// @throws ProcessGroupError if another process has ended
+    /// @throws ProcessGroupError if another process has ended; LoadError or ArgumentError, before
+    ///         the first iteration, if the weights to start from cannot be used
     void run(const std::atomic<bool>& stop);
 
     /// One iteration; the mean loss of its last step over the scenes of this process.
@@ -90,7 +94,10 @@ class Trainer {
     void save();
     /// The network as it is saved: Recipe::mean_share.
     Weights weights();
-    Network& network() { return m_network; }
+    Network& network() {
+        start();
+        return m_network;
+    }
     std::int64_t iteration() const { return m_iteration; }
 
  private:
@@ -113,9 +120,12 @@ class Trainer {
         bool sound = true, has_terms = false, kicked = false;
     };
 
+    void start();
+    void look_up_validation();
     double progress() const;
     bool is_done() const;
     double seconds_left() const;
+    double iterations_per_second() const;
     bool is_filled() const;
     void fill_pools(const std::atomic<bool>& stop);
     void begin(Lane& lane);
@@ -138,6 +148,7 @@ class Trainer {
     void write_row(const Validated& validated);
     void say(const Validated& validated) const;
     void load(torch::serialize::InputArchive& archive, const std::string& file);
+    void check_settings(torch::serialize::InputArchive& archive, const std::string& file) const;
     void write_scenes(torch::serialize::OutputArchive& archive) const;
 
     TrainerSettings m_settings;
@@ -152,6 +163,7 @@ class Trainer {
     std::unique_ptr<Validation> m_validation;
     std::unique_ptr<RolloutValidation> m_rollouts;
     SceneStatistics m_own_statistics, m_statistics;  ///< of this process, of all
+    bool m_started = false;  ///< start_weights are in the network, or what a checkpoint has
     std::int64_t m_iteration = 0;
     double m_seconds = 0.0;  ///< trained so far, by the clock of the first process
     TrainingSums m_sums;

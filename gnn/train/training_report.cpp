@@ -59,6 +59,14 @@ MetricsFile::Row rollout_columns() {
             "held",      "failure", "mean_mm", "stretch",    "penetration_mm"};
 }
 
+/// A dash for what was not measured.
+std::string measured(int digits, double value) {
+    if (std::isnan(value)) return "-";
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", digits, value);
+    return text;
+}
+
 /// "3 h 07 min"
 std::string duration_text(double seconds) {
     const long minutes = std::lround(seconds / 60.0);
@@ -108,6 +116,7 @@ void Trainer::begin_sums() {
 }
 
 void Trainer::run(const std::atomic<bool>& stop) {
+    start();
     if (m_group.is_first()) m_run = std::make_unique<Run>(m_settings, stop, m_seconds, m_iteration);
     if (!is_filled()) fill_pools(stop);
     begin_sums();
@@ -153,12 +162,11 @@ Trainer::Validated Trainer::validate() {
     double start = m_run->seconds();
     if (!m_validation) {
         m_validation = std::make_unique<Validation>(m_factory, m_settings.validation);
-        m_rollouts = std::make_unique<RolloutValidation>(m_factory, m_settings.rollouts,
-                                                         m_settings.references);
         for (const int k : {1, 3}) {
             const ValidationResult solver = m_validation->measure_solver(k);
-            std::fprintf(stderr, "solver, %d iterations: gap T-shirt %.3f, sheet %.3f\n", k,
-                         solver.tshirt.median, solver.sheet.median);
+            std::fprintf(stderr, "solver, %d iterations: gap garment %s, sheet %s\n", k,
+                         measured(3, solver.tshirt.median).c_str(),
+                         measured(3, solver.sheet.median).c_str());
         }
         m_rollouts->prepare(m_run->stop);
         m_run->budget.spent(m_run->seconds() - start, m_run->seconds());
@@ -181,17 +189,15 @@ void Trainer::write_row(const Validated& validated) {
     const TrainingSums& sums = m_sums;
     const double terms = sums.terms_count > 0 ? sums.terms_count : none;
     const double count = sums.count > 0 ? sums.count : none;
-    const double rate = static_cast<double>(m_iteration - sums.first_iteration) /
-                        std::max(1e-9, m_seconds - sums.first_second);
     const double learning_rate = m_settings.recipe.learning_rate(m_iteration, progress());
     MetricsFile::Row row = {cell(m_iteration)};
     for (const double value :
-         {m_seconds, rate, learning_rate, sums.loss / count, median(sums.gaps), median(sums.errors),
-          1e3 * sums.prepare_seconds / count, 1e3 * sums.network_seconds / count,
-          1e3 * sums.solver_seconds / count, sums.terms.strain / terms, sums.terms.bending / terms,
-          sums.terms.gravity / terms, sums.terms.inertia / terms, sums.terms.contact / terms,
-          sums.terms.friction / terms, static_cast<double>(sums.resets),
-          static_cast<double>(sums.kicks)})
+         {m_seconds, iterations_per_second(), learning_rate, sums.loss / count, median(sums.gaps),
+          median(sums.errors), 1e3 * sums.prepare_seconds / count,
+          1e3 * sums.network_seconds / count, 1e3 * sums.solver_seconds / count,
+          sums.terms.strain / terms, sums.terms.bending / terms, sums.terms.gravity / terms,
+          sums.terms.inertia / terms, sums.terms.contact / terms, sums.terms.friction / terms,
+          static_cast<double>(sums.resets), static_cast<double>(sums.kicks)})
         row.push_back(cell(value));
     const bool done = validated.done;
     for (const GapSummary& gap : {validated.steps.tshirt, validated.steps.sheet})
@@ -212,6 +218,13 @@ void Trainer::write_row(const Validated& validated) {
              cell(1e3 * result.distance), cell(result.stretch), cell(1e3 * result.penetration)});
 }
 
+/// Since the last row; NaN where there was none.
+double Trainer::iterations_per_second() const {
+    if (m_iteration == m_sums.first_iteration) return none;
+    return static_cast<double>(m_iteration - m_sums.first_iteration) /
+           std::max(1e-9, m_seconds - m_sums.first_second);
+}
+
 /// Of the clock (s), by the speed since this run began.
 double Trainer::seconds_left() const {
     double left = std::numeric_limits<double>::infinity();
@@ -224,17 +237,18 @@ double Trainer::seconds_left() const {
 }
 
 void Trainer::say(const Validated& validated) const {
-    const double rate = static_cast<double>(m_iteration - m_sums.first_iteration) /
-                        std::max(1e-9, m_seconds - m_sums.first_second);
-    std::fprintf(stderr, "%lld  %.2f it/s  loss %.4f  gap %.3f  resets %d  %s\n",
-                 static_cast<long long>(m_iteration), rate,
-                 m_sums.count > 0 ? m_sums.loss / m_sums.count : none, median(m_sums.gaps),
-                 m_sums.resets, end_text(seconds_left()).c_str());
+    std::fprintf(stderr, "%lld  %s it/s  loss %s  gap %s  resets %d  %s\n",
+                 static_cast<long long>(m_iteration), measured(2, iterations_per_second()).c_str(),
+                 measured(4, m_sums.count > 0 ? m_sums.loss / m_sums.count : none).c_str(),
+                 measured(3, median(m_sums.gaps)).c_str(), m_sums.resets,
+                 end_text(seconds_left()).c_str());
     if (!validated.done) return;
     const ValidationResult& steps = validated.steps;
-    std::fprintf(stderr, "  one step: T-shirt gap %.3f, %.1f mm; sheet gap %.3f, %.1f mm\n",
-                 steps.tshirt.median, steps.tshirt.error_mm, steps.sheet.median,
-                 steps.sheet.error_mm);
+    const auto gap = [](const GapSummary& of) {
+        return measured(3, of.median) + ", " + measured(1, of.error_mm);
+    };
+    std::fprintf(stderr, "  one step: garment gap %s mm; sheet gap %s mm\n",
+                 gap(steps.tshirt).c_str(), gap(steps.sheet).c_str());
     for (const RolloutResult& result : validated.rollouts)
         std::fprintf(stderr, "  %s %s +%d: %d of %d frames, %.0f mm, stretch %.2f %s\n",
                      result.scene.c_str(), result.garment.c_str(), result.iterations, result.held,

@@ -1,6 +1,8 @@
 #include "gnn/train/training_worlds.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <utility>
 
@@ -8,6 +10,7 @@
 #include "data/body/body_shapes.h"
 #include "data/core/carry_over.h"
 #include "data/core/check_range.h"
+#include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/garment_assets.h"
 #include "gnn/train/body_world.h"
@@ -17,11 +20,21 @@ namespace cloth {
 
 namespace {
 
-/// Clips that are kept for validation and reports.
-bool is_held_out(const std::string& name) {
+/// Clips that are kept for validation and reports, by the names of their files.
+bool is_held_out(const std::string& clip) {
+    const std::string name = std::filesystem::path(clip).filename().string();
     for (const char* held_out : {"01_01", "07_02", "16_35", "14_24"})
         if (name.find(held_out) != std::string::npos) return true;
     return false;
+}
+
+void warn_of_named_shared_data() {
+    const char* const folder = std::getenv("CLOTH_SHARED_DATA");
+    if (folder == nullptr || *folder == '\0') return;
+    const bool is_folder = std::filesystem::is_directory(folder);
+    std::cerr << "train: CLOTH_SHARED_DATA is " << folder << ", which "
+              << (is_folder ? "has no folder motions/train" : "is no folder")
+              << ": the two clips of assimp-testmodels are trained on instead\n";
 }
 
 ClothState not_moving(const Points& x) {
@@ -32,9 +45,16 @@ ClothState not_moving(const Points& x) {
 
 std::vector<std::string> training_motions() {
     const auto folder = shared_data_path("motions/train");
-    if (!folder) return {"01_03", "Boxing_Toes"};
+    if (!folder) {
+        warn_of_named_shared_data();
+        return {"01_03", "Boxing_Toes"};
+    }
     std::vector<std::string> motions = list_motions(*folder);
     motions.erase(std::remove_if(motions.begin(), motions.end(), is_held_out), motions.end());
+    if (motions.empty())
+        throw LoadError(*folder, "", "has no motion to train on",
+                        "put BVH files there; names with 01_01, 07_02, 16_35 or 14_24 are kept for "
+                        "validation");
     return motions;
 }
 
@@ -92,27 +112,31 @@ SceneFactory::SceneFactory(const ModelConfig& config, SceneSettings settings, st
             m_assets->sheets.push_back(
                 cloth::make_sheet(width, depth, size, static_cast<unsigned>(random.bits() >> 33)));
         }
-    if (m_settings.garment_share <= 0.0) return;
-    try {
-        m_assets->body = std::make_shared<const Body>(Body::load_default());
-        for (const std::string& name : m_settings.garments) {
-            const Garment garment = load_garment(name);
-            m_assets->garments.push_back({name, garment.rest(), load_garment_start(name).x,
-                                          std::make_shared<const ClothGraph>(build_cloth_graph(
-                                              garment, m_config.graph_settings()))});
-            const std::string proxy = m_settings.proxies ? proxy_of(name) : "";
-            if (proxy.empty()) continue;
-            m_assets->garments.back().proxy = load_garment(proxy).rest();
-            m_assets->garments.back().proxy_worn = load_garment_start(proxy).x;
-        }
-        if (m_settings.motions.empty()) m_settings.motions = training_motions();
-        for (const std::string& name : m_settings.motions)
-            if (!is_held_out(name)) m_assets->motions.push_back(load_motion_by_name(name));
-        m_assets->shapes = BodyShapes::load_shared();
-        if (!m_assets->shapes) std::cerr << "train: no body shapes, the default body is used\n";
-    } catch (const std::exception& error) {
-        std::cerr << "train: no garment scenes: " << error.what() << "\n";
+    if (m_settings.garment_share > 0.0) load_assets();
+}
+
+void SceneFactory::load_assets() {
+    m_assets->body = std::make_shared<const Body>(Body::load_default());
+    for (const std::string& name : m_settings.garments) {
+        const Garment garment = load_garment(name);
+        m_assets->garments.push_back({name, garment.rest(), load_garment_start(name).x,
+                                      std::make_shared<const ClothGraph>(
+                                          build_cloth_graph(garment, m_config.graph_settings()))});
+        const std::string proxy = m_settings.proxies ? proxy_of(name) : "";
+        if (proxy.empty()) continue;
+        m_assets->garments.back().proxy = load_garment(proxy).rest();
+        m_assets->garments.back().proxy_worn = load_garment_start(proxy).x;
     }
+    if (m_settings.motions.empty()) m_settings.motions = training_motions();
+    for (const std::string& name : m_settings.motions)
+        if (!is_held_out(name)) m_assets->motions.push_back(load_motion_by_name(name));
+    const char* const remedy = "name one, or train on sheets alone: garment_share 0";
+    if (m_assets->garments.empty())
+        throw ArgumentError("SceneSettings.garments", "has none", remedy);
+    if (m_assets->motions.empty())
+        throw ArgumentError("SceneSettings.motions", "has none but those of validation", remedy);
+    m_assets->shapes = BodyShapes::load_shared();
+    if (!m_assets->shapes) std::cerr << "train: no body shapes, the default body is used\n";
 }
 
 static std::shared_ptr<const Garment> proxy_garment(const Garment& garment, const TriMesh& rest) {

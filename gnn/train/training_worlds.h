@@ -17,15 +17,18 @@ std::vector<std::string> training_garments();
 std::vector<std::string> proxied_garments();
 
 /// Names or files of the motions that are trained on: those of the shared data folder, else two of
-/// assimp-testmodels. Those that are kept for validation and reports are left out.
+/// assimp-testmodels. Those that are kept for validation and reports are left out. Says on standard
+/// error if CLOTH_SHARED_DATA names a folder without motions/train.
+/// @throws LoadError if that folder has no motion to train on
 std::vector<std::string> training_motions();
 
 struct SceneSettings {
-    double garment_share = 0.65;  ///< of the scenes, where garments and body can be loaded; 0 to 1
-    double shape_share = 0.5;     ///< of garment scenes with a sampled body shape, where available;
-                                  ///< 0 to 1
-    double fabric_share = 0.6;    ///< of scenes with a sampled fabric; the others are soft cotton;
-                                  ///< 0 to 1
+    double garment_share =
+        0.65;                   ///< of the scenes, 0 to 1; 0: no garment, body or motion is loaded
+    double shape_share = 0.5;   ///< of garment scenes with a sampled body shape, where available;
+                                ///< 0 to 1
+    double fabric_share = 0.6;  ///< of scenes with a sampled fabric; the others are soft cotton;
+                                ///< 0 to 1
     std::vector<int> sheet_sizes = {300, 500, 800, 1200};  ///< vertices, 9 to 200,000 each
     /// As load_garment() takes them. tank_top is kept out, so that there is an unseen garment; the
     /// last one is validated on.
@@ -46,7 +49,10 @@ struct SceneSettings {
 /// on bodies in motion. A scene depends on its seed (and the settings) alone.
 class SceneFactory {
  public:
-    /// Loads what it can of body, motions and garments; says on standard error what is missing.
+    /// Loads body, motions and garments, if there is a share of scenes with garments.
+    /// @throws LoadError for one that cannot be loaded, ArgumentError if none is left of garments
+    /// or
+    ///         motions: hours must not be spent on sheets alone
     SceneFactory(const ModelConfig& config, SceneSettings settings, std::uint64_t seed);
     ~SceneFactory();
 
@@ -68,6 +74,8 @@ class SceneFactory {
 
  private:
     struct Assets;
+    void load_assets();
+
     ModelConfig m_config;
     SceneSettings m_settings;
     std::unique_ptr<Assets> m_assets;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "data/core/check_range.h"
-#include "data/core/paths.h"
+#include "gnn/train/validation_names.h"
 
 namespace cloth {
 
@@ -20,12 +20,6 @@ Points to_positions(const TrainingScene& scene, const torch::Tensor& output) {
     return x;
 }
 
-/// A walk and a run of the shared data folder, else the jump of assimp-testmodels.
-static std::vector<std::string> held_out_clips() {
-    if (shared_data_path("motions/validation")) return {"07_02", "16_35"};
-    return {"01_01"};
-}
-
 void ValidationSettings::check() const {
     check_range("ValidationSettings.garment_states", garment_states, 0, 1000);
     check_range("ValidationSettings.sheet_states", sheet_states, 0, 1000);
@@ -37,22 +31,29 @@ Validation::Validation(const SceneFactory& factory, ValidationSettings settings)
     : m_settings(settings) {
     m_settings.check();
     if (factory.has_garments() && settings.garment_states > 0) {
-        const std::vector<std::string> clips = held_out_clips();
+        const std::vector<std::string> clips = validation_clips();
         const int each = std::max(1, settings.garment_states / static_cast<int>(clips.size()));
         for (const std::string& clip : clips)
-            add_states(factory.make_garment(1, clip, settings.garment), 32, 6, each);
+            add_states(factory.make_garment(1, clip, settings.garment), 32.0 / 30.0, 0.2, each);
     }
     for (int k = 0; k < settings.sheet_states; k += 2)
-        add_states(factory.make_sheet(0x7e57000000ull + static_cast<std::uint64_t>(k)), 5, 10, 2);
+        add_states(factory.make_sheet(0x7e57000000ull + static_cast<std::uint64_t>(k)), 5.0 / 30.0,
+                   1.0 / 3.0, 2);
 }
 
-void Validation::add_states(std::shared_ptr<TrainingScene> scene, int first_frame, int every,
+/// @param first, every  (s) so that they are the same states at each time step; those of a garment
+///                      come behind the second in which it settles on the body
+void Validation::add_states(std::shared_ptr<TrainingScene> scene, double first, double every,
                             int count) {
-    const int last = first_frame + every * (count - 1);
+    const auto frames = [&](double seconds) {
+        return std::max(1, static_cast<int>(std::lround(seconds / scene->dt())));
+    };
+    const int first_frame = frames(first), step = frames(every);
+    const int last = first_frame + step * (count - 1);
     for (int frame = 0; frame <= last; ++frame) {
         scene->prepare(full_contact_weight);
         Points x = scene->features().base;
-        if (frame >= first_frame && (frame - first_frame) % every == 0) {
+        if (frame >= first_frame && (frame - first_frame) % step == 0) {
             Points minimum = x;
             const double least = scene->refine(minimum, m_settings.minimum_iterations);
             m_states.push_back({scene, scene->state, least, scene->potential().value(x), minimum});
@@ -60,6 +61,13 @@ void Validation::add_states(std::shared_ptr<TrainingScene> scene, int first_fram
         scene->refine(x, m_settings.rollout_iterations);
         if (!scene->advance(x)) return;
     }
+}
+
+std::vector<double> Validation::times() const {
+    std::vector<double> times;
+    for (const State& state : m_states)
+        times.push_back(state.state.time - state.scene->parts().start.time);
+    return times;
 }
 
 static GapSummary summarise(std::vector<double> gaps, std::vector<double> errors) {

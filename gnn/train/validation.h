@@ -39,6 +39,9 @@ class Validation {
     /// The same for the solver alone, for comparison.
     ValidationResult measure_solver(int iterations);
 
+    /// Of the states, since the starts of their scenes (s).
+    std::vector<double> times() const;
+
  private:
     struct State {
         std::shared_ptr<TrainingScene> scene;
@@ -46,7 +49,7 @@ class Validation {
         double least = 0.0, base = 0.0;
         Points minimum;  ///< |V| x 3 (m)
     };
-    void add_states(std::shared_ptr<TrainingScene> scene, int first_frame, int every, int count);
+    void add_states(std::shared_ptr<TrainingScene> scene, double first, double every, int count);
     template <typename Predict>
     ValidationResult measure_with(Predict predict);
 

@@ -95,6 +95,21 @@ class ShortSteps : public ::testing::Test {
     SolverSettings m_settings;
 };
 
+TEST_F(ShortSteps, AFileWithAMarkInItsNameIsRefusedAndNotListed) {
+    const std::string file = m_settings.weights + "/short~1.safetensors";
+    std::filesystem::copy_file(m_settings.weights + "/short.safetensors", file,
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_EQ(networks_in(m_settings.weights), std::vector<std::string>{"short"});
+    try {
+        make_solver("short~1", FreeSheet(60), m_settings);
+        ADD_FAILURE() << "it was taken for a proxy";
+    } catch (const UsageError& error) {
+        EXPECT_EQ(std::string(error.what()),
+                  "solver short~1: ~, + and @ have a meaning in solvers' names; rename " + file);
+    }
+    std::filesystem::remove(file);
+}
+
 TEST_F(ShortSteps, AreTakenOneAfterTheOtherInEachFrame) {
     EXPECT_EQ(made("short+1", 60), "short+1");
     EXPECT_EQ(made("short+1", 30), "short+1x2");

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "data/core/errors.h"
+#include "gnn/model/engine_weights.h"
+#include "tests/gnn/model/random_weights.h"
 
 namespace cloth::weights_test {
 namespace {
@@ -27,6 +29,12 @@ Weights small_weights() {
             for (size_t i = 0; i < count; ++i) tensor.data.push_back(value += 0.25f);
         }
     return weights;
+}
+
+ModelConfig small_config() {
+    ModelConfig config = ModelConfig::variant_named("fast", 2);
+    config.width = 16;
+    return config;
 }
 
 class WeightsFile : public testing::Test {
@@ -102,6 +110,25 @@ TEST_F(WeightsFile, RefusesAMissingTensorByName) {
     EXPECT_NE(refusal().find("tensor decoder.output.bias: is missing"), std::string::npos);
 }
 
+TEST_F(WeightsFile, RefusesAnUnknownTensorByName) {
+    TensorFile raw = TensorFile::load(m_file);
+    raw.tensors["decoder.extra"] = {{1}, {0.5f}};
+    raw.save(m_file);
+    EXPECT_NE(refusal().find("tensor decoder.extra: is not one of the configuration"),
+              std::string::npos);
+}
+
+TEST_F(WeightsFile, RefusesBytesOfNoTensorOrOfTwo) {
+    const std::string bytes = m_bytes;
+    write(bytes + "more");
+    EXPECT_NE(refusal().find("has 4 bytes behind its last tensor"), std::string::npos);
+    replace("[80,96]", "[16,32]");
+    EXPECT_NE(refusal().find("shares bytes with another tensor"), std::string::npos);
+    m_bytes = bytes;
+    replace("[0,16]", "[1,17]");
+    EXPECT_NE(refusal().find("does not begin where the one before it ends"), std::string::npos);
+}
+
 TEST_F(WeightsFile, RefusesATensorOfAnotherShapeByName) {
     replace("\"shape\":[3,4]", "\"shape\":[4,3]");
     const std::string message = refusal();
@@ -142,6 +169,38 @@ TEST_F(WeightsFile, RefusesAFileThatIsSomethingElse) {
 TEST_F(WeightsFile, RefusesAConfigurationOutOfRange) {
     replace("\\\"steps\\\":2", "\\\"steps\\\":0");
     EXPECT_NE(refusal().find("steps"), std::string::npos);
+}
+
+TEST(EngineWeights, OfMemoryAreCheckedAsThoseOfAFile) {
+    const auto message = [](const auto& change) {
+        Weights weights = test::random_weights(small_config());
+        change(weights.tensors);
+        try {
+            const EngineWeights packed(weights);
+        } catch (const ArgumentError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    using Tensors = std::map<std::string, WeightTensor>;
+    EXPECT_EQ(message([](Tensors&) {}), "");
+    EXPECT_NE(message([](Tensors& all) {
+                  all.at("decoder.output.weight").data.pop_back();
+              }).find("decoder.output.weight"),
+              std::string::npos);
+    EXPECT_NE(message([](Tensors& all) {
+                  all.at("step.0.node.output.bias").data[3] =
+                      std::numeric_limits<float>::quiet_NaN();
+              }).find("step.0.node.output.bias: element 3 is not finite"),
+              std::string::npos);
+    EXPECT_NE(message([](Tensors& all) {
+                  all.at("statistics.body.deviation").data[0] = 0.0f;
+              }).find("statistics.body.deviation: element 0 is not positive"),
+              std::string::npos);
+    EXPECT_NE(message([](Tensors& all) {
+                  all.erase("encoder.world.first.bias");
+              }).find("encoder.world.first.bias: is missing"),
+              std::string::npos);
 }
 
 TEST(Weights, AreNotSavedIncomplete) {

@@ -6,6 +6,7 @@
 
 #include "collision/proximity/proximity.h"
 #include "data/authoring/sheet.h"
+#include "data/core/errors.h"
 #include "gnn/graph/graph_batch.h"
 #include "gnn/physics/stepper/guess.h"
 #include "gnn/train/network.h"
@@ -191,6 +192,36 @@ TEST(Engine, AGraphWithoutTheLevelsGivesNoFiniteNumber) {
     Engine engine(*weights);
     EXPECT_FALSE(predict(engine, scene).allFinite());
     EXPECT_FALSE(predict(*make_torch_predictor(*weights), scene).allFinite());
+}
+
+TEST(Engine, GraphsAndFeaturesOfOtherSettingsGiveNoFiniteNumber) {
+    for (const char* variant : {"fast", "hood_fast"}) {
+        const ModelConfig config = small_config(variant);
+        const auto weights = random_weights(config);
+        const auto change = [&](const auto& set) {
+            ModelConfig other = config;
+            set(other);
+            return other;
+        };
+        const EngineScene own(config, 120);
+        const ModelConfig others[] = {
+            change([](ModelConfig& c) { c.sampled_edges = 0; }),
+            change([](ModelConfig& c) { c.sampled_edges = 3; }),
+            change([&](ModelConfig& c) { c = ModelConfig::variant_named(variant, 6); }),
+            change([&](ModelConfig& c) { c = ModelConfig::variant_named(variant, 9); }),
+            change([](ModelConfig& c) { c.features.force_features = false; })};
+        for (const ModelConfig& other : others) {
+            const EngineScene scene(other, 120);
+            Engine engine(*weights);
+            const auto libtorch = make_torch_predictor(*weights);
+            EXPECT_FALSE(predict(engine, scene).allFinite());
+            EXPECT_FALSE(predict(*libtorch, scene).allFinite());
+            Network network(config, torch::kCPU, 1);
+            EXPECT_THROW(network.forward(scene.graph, scene.features), ArgumentError);
+            EXPECT_TRUE(predict(engine, own).allFinite()) << "the next one is its own again";
+            EXPECT_TRUE(predict(*libtorch, own).allFinite());
+        }
+    }
 }
 
 TEST(Engine, HasTheNameOfItsWeightsAsLibTorchHas) {

@@ -362,6 +362,9 @@ TEST(Network, StartsNearItsGuess) {
 TEST(Network, RefusesWeightsOfAnotherConfiguration) {
     Network fast(small("fast"), torch::kCPU, 1), baseline(small("baseline"), torch::kCPU, 1);
     EXPECT_THROW(fast.import_weights(baseline.export_weights()), ArgumentError);
+    Weights shorter = fast.export_weights();
+    shorter.tensors.at("statistics.node.mean").data.pop_back();
+    EXPECT_THROW(fast.import_weights(shorter), ArgumentError);
     EXPECT_THROW(make_torch_predictor(fast.export_weights(), "tpu"), ArgumentError);
 }
 

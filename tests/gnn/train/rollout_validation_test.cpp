@@ -5,9 +5,16 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
 
 #include "data/core/errors.h"
+#include "data/core/paths.h"
 #include "gnn/train/network.h"
+#include "gnn/train/reference_fingerprint.h"
+#include "gnn/train/sheet_world.h"
+#include "gnn/train/validation.h"
 
 namespace cloth::rollout_validation_test {
 namespace {
@@ -45,6 +52,18 @@ class Rollouts : public testing::Test {
     }
     std::vector<RolloutResult> measure(const Weights& weights) const {
         return *RolloutValidation(m_factory, m_settings, m_folder).measure(weights, m_go);
+    }
+
+    std::string refusal(const SceneFactory& factory, const std::vector<std::string>& garments,
+                        const std::vector<std::string>& clips) {
+        m_settings.garments = garments;
+        m_settings.clips = clips;
+        try {
+            RolloutValidation(factory, m_settings, m_folder);
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        return "";
     }
 
     const SceneFactory m_factory{tiny_model(), sheets_only(), 1};
@@ -148,9 +167,118 @@ TEST_F(Rollouts, DressEachGarment) {
         }
         return all;
     };
-    EXPECT_EQ(dressed({"shorts_1000", "toga", "skirt_1000"}),
-              "01_01 shorts_1000; 01_01 skirt_1000; ");
-    EXPECT_EQ(dressed({"toga"}), "01_01 tshirt_1000; ") << "the last one there";
+    EXPECT_EQ(dressed({"shorts_1000", "skirt_1000"}), "01_01 shorts_1000; 01_01 skirt_1000; ");
+    EXPECT_EQ(dressed({}), "01_01 tshirt_1000; ") << "the last one there";
+    EXPECT_EQ(refusal(factory, {"shorts_1000", "toga"}, {}),
+              "--validation-garments: toga is not trained on. Remedy: choose among skirt_1000, "
+              "shorts_1000, tshirt_1000");
+}
+
+TEST_F(Rollouts, RefuseNamesThatAreNotThereAtOnce) {
+    EXPECT_NE(refusal(m_factory, {}, {"01_0l"}).find("--validation-clips: 01_0l: no motion"),
+              std::string::npos);
+    EXPECT_NE(refusal(m_factory, {"tshirt"}, {}).find("--garment-share"), std::string::npos)
+        << "without garment scenes";
+}
+
+/// Some frames of clip 01_03.
+void write_clip(const std::string& file, int first) {
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+    constexpr int frames = 24;
+    std::ifstream whole(model_path("BVH/01_03.bvh"));
+    std::ofstream out(file);
+    std::string line;
+    while (std::getline(whole, line) && line.rfind("Frames:", 0) != 0) out << line << '\n';
+    out << "Frames: " << frames << '\n';
+    std::getline(whole, line);  // the time of a frame
+    out << line << '\n';
+    for (int frame = 0; frame < first + frames; ++frame) {
+        std::getline(whole, line);
+        if (frame >= first) out << line << '\n';
+    }
+}
+
+TEST_F(Rollouts, ClipsOfOneFileNameAreToldApart) {
+    const std::string early = m_folder + "/early/walk.bvh", late = m_folder + "/late/walk.bvh";
+    write_clip(early, 100);
+    write_clip(late, 300);
+    SceneSettings scenes;
+    scenes.garments = {"tshirt_1000"};
+    scenes.motions = {early};
+    const SceneFactory factory(tiny_model(), scenes, 1);
+    m_settings.sheet_vertices = 0;
+    m_settings.frames = 2;
+    m_settings.reference_iterations = 1;
+    m_settings.iterations = {0};
+    m_settings.clips = {early, late};
+    const std::string kept = m_folder + "/references";
+    const auto results =
+        RolloutValidation(factory, m_settings, kept).measure(random_weights(0.0f), m_go);
+    ASSERT_EQ(results->size(), 2u);
+    EXPECT_EQ(results->at(0).scene, early);
+    EXPECT_EQ(results->at(1).scene, late);
+    const auto files = [&] {
+        return std::distance(std::filesystem::directory_iterator(kept),
+                             std::filesystem::directory_iterator());
+    };
+    EXPECT_EQ(files(), 2);
+    m_settings.clips = {early};
+    const auto scene_of = [&] {
+        return RolloutValidation(factory, m_settings, kept)
+            .measure(random_weights(0.0f), m_go)
+            ->at(0)
+            .scene;
+    };
+    EXPECT_EQ(scene_of(), "walk");
+    EXPECT_EQ(files(), 2) << "the reference is found again";
+    write_clip(early, 200);
+    scene_of();
+    EXPECT_EQ(files(), 3) << "a clip that was edited has a reference of its own";
+}
+
+TEST(ReferenceFingerprints, TellPinsFacesAndSurroundingsApart) {
+    const SceneFactory factory(tiny_model(), sheets_only(), 1);
+    const auto print = [&](const std::function<void(SceneParts&)>& change) {
+        SceneParts parts = make_test_sheet(60, true);
+        change(parts);
+        return reference_fingerprint(*factory.finish(std::move(parts)), 4);
+    };
+    const auto with = [](SceneParts& parts, TriMesh rest, std::vector<int> pins) {
+        parts.garment = std::make_shared<const Garment>("sheet", std::move(rest),
+                                                        Fabric::soft_cotton(), std::move(pins));
+    };
+    const std::uint64_t plain = print([](SceneParts&) {});
+    EXPECT_EQ(print([](SceneParts&) {}), plain);
+    EXPECT_NE(print([&](SceneParts& parts) { with(parts, parts.garment->rest(), {0}); }), plain);
+    EXPECT_NE(print([&](SceneParts& parts) {
+                  TriMesh rest = parts.garment->rest();
+                  rest.faces.row(0) = rest.faces.row(1).eval();
+                  rest.faces.row(1) = parts.garment->rest().faces.row(0);
+                  with(parts, rest, parts.garment->pins());
+              }),
+              plain);
+    EXPECT_NE(
+        print([](SceneParts& parts) { parts.world = std::move(make_test_sheet(60, false).world); }),
+        plain);
+}
+
+TEST(Validation, TakesTheSameTimesAtEachRate) {
+    const auto times = [](double rate) {
+        ModelConfig model = tiny_model();
+        model.dt = 1.0 / rate;
+        ValidationSettings settings;
+        settings.garment_states = 0;
+        settings.sheet_states = 4;
+        settings.minimum_iterations = settings.rollout_iterations = 1;
+        return Validation(SceneFactory(model, sheets_only(), 1), settings).times();
+    };
+    const std::vector<double> at_30 = times(30.0), at_60 = times(60.0);
+    ASSERT_EQ(at_30.size(), 4u);
+    ASSERT_EQ(at_60.size(), 4u);
+    for (size_t k = 0; k < 4; ++k) {
+        EXPECT_NEAR(at_30[k], k % 2 == 0 ? 5.0 / 30.0 : 0.5, 1e-9);
+        EXPECT_NEAR(at_60[k], at_30[k], 1e-9);
+    }
 }
 
 TEST_F(Rollouts, RefuseSettingsOutOfRange) {

@@ -3,10 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
 
 #include "data/body/body.h"
+#include "data/core/errors.h"
 #include "data/files/garment_assets.h"
 #include "gnn/train/body_world.h"
+#include "gnn/train/validation_names.h"
 
 namespace cloth::training_worlds_test {
 
@@ -78,6 +84,78 @@ TEST(TrainingGarments, ThoseOfProxiesHaveOne) {
         EXPECT_LT(scene->parts().proxy->vertex_count(), 1100);
         EXPECT_GT(scene->garment().vertex_count(), 1800);
     }
+}
+
+/// The environment variable has a value for as long as this lives.
+class SharedData {
+ public:
+    explicit SharedData(const std::string& folder) {
+        const char* const before = std::getenv(name);
+        if (before != nullptr) m_before = before;
+        setenv(name, folder.c_str(), 1);
+    }
+    ~SharedData() { m_before ? setenv(name, m_before->c_str(), 1) : unsetenv(name); }
+    SharedData(const SharedData&) = delete;
+    SharedData& operator=(const SharedData&) = delete;
+
+ private:
+    static constexpr const char* name = "CLOTH_SHARED_DATA";
+    std::optional<std::string> m_before;
+};
+
+TEST(SceneFactory, RefusesMotionsThatAreNotThereOrBroken) {
+    const std::string folder = testing::TempDir() + "training_worlds_shared";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder + "/motions/train");
+    const SharedData shared(folder);
+    SceneSettings settings;
+    settings.garments = {"skirt_1000"};
+    const auto message = [&] {
+        try {
+            const SceneFactory factory(ModelConfig::variant_named("fast"), settings, 1);
+        } catch (const std::exception& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(message().find(folder + "/motions/train: has no motion to train on"),
+              std::string::npos);
+    std::ofstream(folder + "/motions/train/07_02_walk.bvh") << "held out";
+    EXPECT_NE(message().find("has no motion to train on"), std::string::npos);
+    std::ofstream(folder + "/motions/train/mine.bvh") << "broken";
+    EXPECT_NE(message().find(folder + "/motions/train/mine.bvh"), std::string::npos);
+    settings.garment_share = 0.0;
+    EXPECT_EQ(message(), "") << "sheets need no motion";
+    settings.garment_share = 0.5;
+    settings.motions = {"01_01"};
+    EXPECT_NE(message().find("SceneSettings.motions"), std::string::npos);
+}
+
+TEST(TrainingMotions, AFolderThatIsNamedInVainIsSaid) {
+    for (const char* folder : {"/no/such/folder", "/proc"}) {
+        const SharedData shared(folder);
+        testing::internal::CaptureStderr();
+        EXPECT_EQ(training_motions(), (std::vector<std::string>{"01_03", "Boxing_Toes"}));
+        const std::string said = testing::internal::GetCapturedStderr();
+        EXPECT_NE(said.find(std::string("CLOTH_SHARED_DATA is ") + folder), std::string::npos);
+    }
+}
+
+TEST(ValidationClips, AreThoseOfTheFolderThatIsNamed) {
+    const std::string folder = testing::TempDir() + "validation_clips_shared";
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder + "/motions/validation");
+    const SharedData shared(folder);
+    EXPECT_THROW(validation_clips(), LoadError);
+    EXPECT_THROW(default_rollout_clips(), LoadError);
+    const std::string start = folder + "/motions/validation/";
+    const auto add = [&](const std::string& name) { std::ofstream(start + name) << "BVH"; };
+    for (const char* name : {"c.bvh", "a.bvh", "b.bvh", "07_02_walk.bvh"}) add(name);
+    EXPECT_EQ(validation_clips(),
+              (std::vector<std::string>{start + "07_02_walk.bvh", start + "a.bvh"}));
+    EXPECT_EQ(default_rollout_clips().size(), 4u);
+    add("16_35.bvh");
+    EXPECT_EQ(validation_clips(), (std::vector<std::string>{"07_02", "16_35"}));
 }
 
 TEST(CarriedAlong, AGarmentMovesWithTheSkinUnderIt) {
