@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "bullet_ext/bodyFollower.h"
 #include "bullet_ext/bodyGoals.h"
@@ -126,7 +127,7 @@ void checkGoals(const btSoftBody& body, const cloth::SkinGoals& goals, double du
 constexpr btScalar kMostGravity = 100;  // m/s^2: four times Jupiter's
 
 /// What cloth and bodies did to each other, or the scene to the cloth, that a user should know of.
-std::vector<std::string> troublesOf(const btSoftBody& body,
+std::vector<std::string> troublesOf(const btSoftBody& body, const cloth::Stepper& stepper,
                                     const cloth::SoftBodyStep::Result& result) {
     std::vector<std::string> troubles;
     const std::string name = cloth::softBodyName(body);
@@ -135,6 +136,12 @@ std::vector<std::string> troublesOf(const btSoftBody& body,
             name +
             ": cloth and rigid bodies would have made energy in a step, which was taken away. "
             "Remedy: if it looks stiff, smaller time steps, or masses that differ less");
+    if (result.unbalanced)
+        troubles.push_back(
+            name + ": its stepper " + stepper.name() +
+            " does not know its energy, so what it and dynamic bodies give each "
+            "other is not balanced, and may grow. Remedy: make_cloth() where dynamic "
+            "bodies land on cloth; nothing, if it looks right");
     if (result.without_goals)
         troubles.push_back(name +
                            ": it has goal limits and was never given goals, so it is held where it "
@@ -453,6 +460,9 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
         throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
                             "a pose or the duration is not finite",
                             "check the animation before handing it over");
+    if (!cloth::isRigid(from) || !cloth::isRigid(to))
+        throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
+                            "a pose scales, shears or mirrors", "give the pose of the bone alone");
     rootOf(entryOf(body)).set(cloth::toPose(from), cloth::toPose(to), duration);
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
@@ -562,11 +572,22 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (!isFinite(motion))
         throw ArgumentError(cloth::softBodyName(*body) + ": teleport()", "the motion is not finite",
                             "give the motion from the old place to the new one");
+    if (!cloth::isRigid(motion))
+        throw ArgumentError(cloth::softBodyName(*body) + ": teleport()",
+                            "the motion scales, shears or mirrors",
+                            "give one that turns and moves; scale() the body to change its size");
     Entry& entry = entryOf(body);
+    entry.placed = true;
     // What was cut is told by where the nodes were shown.
     if (entry.step && cloth::topologySignature(*body) != entry.topology) refresh(*body, entry);
-    const bool reset = kind == btGnnTeleport::reset && entry.limits;
-    const cloth::Points places = reset ? goalsOf(*body, entry)->now() : cloth::nodePositions(*body);
+    const bool has_goals = entry.limits || (entry.goals && entry.goals->given());
+    const bool on_goals = kind == btGnnTeleport::reset && has_goals;
+    if (kind == btGnnTeleport::reset && !has_goals)
+        say(cloth::softBodyName(*body) +
+            ": teleport() by reset has no goals to put it on, and lets it keep its shape. "
+            "Remedy: give goals by setGoals() before");
+    const cloth::Points places =
+        on_goals ? goalsOf(*body, entry)->now() : cloth::nodePositions(*body);
     for (int i = 0; i < body->m_nodes.size(); ++i) {
         btSoftBody::Node& node = body->m_nodes[i];
         node.m_x = motion * cloth::toBullet(cloth::Vec3(places.row(i)));
@@ -579,6 +600,19 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     body->updateBounds();
     showWithoutObstacles(*body, entry);
     if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
+}
+
+/// Of skin that was put elsewhere without its cloth.
+void btGnnSoftBodySolver::tellOfJumps(const btSoftBody& body, Entry& entry) {
+    const bool placed = std::exchange(entry.placed, false);
+    if (placed || entry.stepping != Stepping::cloth) return;
+    btVector3 low, high;
+    body.getAabb(low, high);
+    if (m_obstacles.anyJumpsFrom(cloth::toVec3(low), cloth::toVec3(high)))
+        say(cloth::softBodyName(body) +
+            ": an animated obstacle at it jumped by more than half a metre between two steps, and "
+            "leaves it behind or drags it. Remedy: let x0 be the x1 of before; call teleport() "
+            "where the character was put elsewhere");
 }
 
 btGnnSoftBodySolver::Stepping btGnnSoftBodySolver::steppingOf(const btSoftBody* body) const {
@@ -623,6 +657,7 @@ void btGnnSoftBodySolver::solveConstraints(btScalar solverdt) {
         m_status.clothBodies += entry.stepping == Stepping::cloth;
         m_status.bulletBodies += entry.stepping == Stepping::bullet;
         m_status.frozenBodies += entry.stepping == Stepping::frozen;
+        tellOfJumps(body, entry);
         if (entry.stepping == Stepping::cloth && body.getActivationState() == ISLAND_SLEEPING &&
             entry.step->sleepsOn(m_obstacles)) {
             ++m_status.sleepingBodies;
@@ -785,7 +820,7 @@ void btGnnSoftBodySolver::finishStep(const Stepped& cloth) {
         entry.failures = result.failed_steps > 0 ? entry.failures + result.failed_steps : 0;
     }
     m_status.maxPenetration = std::max(m_status.maxPenetration, entry.step->shownDepth());
-    for (const std::string& trouble : troublesOf(body, result)) say(trouble);
+    for (const std::string& trouble : troublesOf(body, entry.step->stepper(), result)) say(trouble);
     showFollower(body, entry);
     if (entry.failures >= m_settings.maxFailedSteps)
         giveUp(body, entry,

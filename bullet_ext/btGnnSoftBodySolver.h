@@ -208,7 +208,9 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// Gives the root's motion before each stepSimulation(), such as that of the character's hips;
     /// a root that is not given anew stands still.
     /// @param from, to  now and after `duration` seconds, in the world
-    /// @throws cloth::ArgumentError if the body is null or a number is not finite
+    /// @throws cloth::ArgumentError if the body is null, a number is not finite, or a pose does
+    /// more
+    ///         than turn and move
     void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
                        double duration = 0.0);
     /// How much a body's cloth may cost from now on; switch it whenever you like: nothing jumps.
@@ -268,8 +270,11 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// was put elsewhere. setGoals() and setAnimatedObstacle() then go on from the new place.
     ///
     /// keep: all nodes are moved by `motion`, and what they did turns with them. reset: they are
-    /// put on their goals, moved by `motion`, and rest.
-    /// @throws cloth::ArgumentError if the body is null or the motion is not finite
+    /// put on their goals, moved by `motion`, and rest. That needs goals, limited or not; a body
+    /// without goals keeps its shape, with a message, and rests.
+    /// @throws cloth::ArgumentError if the body is null, the motion is not finite, or does more
+    /// than
+    ///         turn and move
     void teleport(btSoftBody* body, const btTransform& motion,
                   btGnnTeleport kind = btGnnTeleport::keep);
 
@@ -309,6 +314,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         long built = 0;                   ///< the number of this stepper in the solver
         bool meets = false;               ///< other cloth is near
         bool waits = false;               ///< to be finished when contacts are resolved
+        bool placed = false;              ///< by teleport(), since the last world step
     };
 
     Entry& entryOf(const btSoftBody* body);
@@ -333,6 +339,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void joinGoals(btSoftBody& body, Entry& entry);
     cloth::RootMotion& rootOf(Entry& entry);
     void applyDetail(const btSoftBody& body, Entry& entry);
+    void tellOfJumps(const btSoftBody& body, Entry& entry);
     bool isStepped(const btSoftBody* body) const;
     void showFollower(const btSoftBody& body, Entry& entry);
     void showWithoutObstacles(const btSoftBody& body, Entry& entry);

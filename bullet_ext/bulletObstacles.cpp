@@ -27,6 +27,12 @@ bool isInWorld(const btCollisionObject& object) {
     return object.getBroadphaseHandle() != nullptr;
 }
 
+/// Whether a mesh of so many vertices (m) was put elsewhere: nobody moves as far in no time.
+bool hasJumped(const Points& from, const Points& to) {
+    constexpr double kJump = 0.5;  // m
+    return from.rows() == to.rows() && (to - from).rowwise().squaredNorm().mean() > kJump * kJump;
+}
+
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
@@ -134,13 +140,16 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
                             "has not one limb from 0 to 31 for each of its " +
                                 std::to_string(mesh.faces->rows()) + " faces",
                             "number the limb of each face, or leave limbs away");
-    if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0))
+    if (!mesh.x0.allFinite() || !mesh.x1.allFinite() || !(mesh.duration >= 0.0) ||
+        std::isinf(mesh.duration))
         throw ArgumentError("animated obstacle", "vertices or duration are not finite",
                             "check the animation before handing it over");
     Animation animation(std::move(mesh));
     const auto known = m_animated.find(object);
     animation.was_in_world =
         isInWorld(*object) || (known != m_animated.end() && known->second.was_in_world);
+    if (known != m_animated.end() && hasJumped(known->second.now(), animation.mesh.x0))
+        animation.jumped_from = known->second.box1;
     m_animated.insert_or_assign(object, std::move(animation));
 }
 
@@ -218,6 +227,14 @@ BulletObstacles::Track& BulletObstacles::update(const btCollisionObject& object)
     track.target = target;
     track.step = m_step;
     return track;
+}
+
+void BulletObstacles::follow(const btCollisionObject& object) {
+    const auto found = m_tracks.find(&object);
+    if (found == m_tracks.end()) return;
+    found->second.target = object.getWorldTransform();
+    found->second.end = toPose(found->second.target);
+    found->second.remaining = 0.0;
 }
 
 void BulletObstacles::append(const Track& track, double friction, const TimeSpan& span,
@@ -304,11 +321,25 @@ BulletObstacles::Animation::Animation(AnimatedMesh given) : mesh(std::move(given
     box1 = around(mesh.x1);
 }
 
+bool BulletObstacles::Box::overlaps(const Vec3& other_low, const Vec3& other_high) const {
+    return (low.array() <= other_high.array()).all() && (high.array() >= other_low.array()).all();
+}
+
 bool BulletObstacles::Animation::near(const Vec3& low, const Vec3& high) const {
-    const auto overlaps = [&](const Box& box) {
-        return (box.low.array() <= high.array()).all() && (box.high.array() >= low.array()).all();
-    };
-    return overlaps(box0) || overlaps(box1);
+    return box0.overlaps(low, high) || box1.overlaps(low, high);
+}
+
+Points BulletObstacles::Animation::now() const {
+    const double share = mesh.duration > 0.0 ? std::min(end / mesh.duration, 1.0) : 1.0;
+    return mesh.x0 + share * (mesh.x1 - mesh.x0);
+}
+
+bool BulletObstacles::anyJumpsFrom(const Vec3& low, const Vec3& high) const {
+    return std::any_of(m_animated.begin(), m_animated.end(), [&](const auto& known) {
+        const Animation& animation = known.second;
+        const bool is_new = animation.begin == 0.0;
+        return is_new && animation.jumped_from && animation.jumped_from->overlaps(low, high);
+    });
 }
 
 std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, const Vec3& low,

@@ -128,6 +128,12 @@ class BulletObstacles {
 
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
+    /// Whether an animated mesh was in the box (m) at the end of the last world step, and starts
+    /// this one more than half a metre from there.
+    bool anyJumpsFrom(const Vec3& low, const Vec3& high) const;
+
+    /// The object was put elsewhere at the end of the world step.
+    void follow(const btCollisionObject& object);
 
     /// Messages since the last call: shapes that cannot be obstacles, each reported once, and
     /// frictions that are none.
@@ -146,15 +152,19 @@ class BulletObstacles {
     };
     struct Box {
         Vec3 low, high;
+        bool overlaps(const Vec3& other_low, const Vec3& other_high) const;
     };
     struct Animation {
         explicit Animation(AnimatedMesh given);
 
         AnimatedMesh mesh;
-        Box box0, box1;                 ///< around x0 and x1: every body of the world asks for them
-        bool was_in_world = false;      ///< its object was, at some time
-        double begin = 0.0, end = 0.0;  ///< the present world step, counted from x0 (s)
+        Box box0, box1;  ///< around x0 and x1: every body of the world asks for them
+        std::optional<Box> jumped_from;  ///< around where it was, if it starts elsewhere
+        bool was_in_world = false;       ///< its object was, at some time
+        double begin = 0.0, end = 0.0;   ///< the present world step, counted from x0 (s)
         bool near(const Vec3& low, const Vec3& high) const;
+        /// Where it is at the end of the present world step (|V| x 3, m).
+        Points now() const;
         /// A mesh that was not given anew stands still; one that was is assumed to go on as it
         /// does.
         bool stands() const { return begin >= mesh.duration * 0.999; }

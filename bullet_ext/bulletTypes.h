@@ -60,6 +60,14 @@ inline bool isFinite(const btTransform& pose) {
     return isFinite(pose.getOrigin()) && toMatrix(pose.getBasis()).allFinite();
 }
 
+/// Whether a finite pose only turns and moves.
+inline bool isRigid(const btTransform& pose) {
+    constexpr double kFar = 1e-3;
+    const Eigen::Matrix3d basis = toMatrix(pose.getBasis());
+    return (basis * basis.transpose()).isApprox(Eigen::Matrix3d::Identity(), kFar) &&
+           basis.determinant() > 0.0;
+}
+
 /// Whether Bullet's floats can hold the numbers (m, m/s, N s) and their squares.
 template <typename Derived>
 bool fitsFloats(const Eigen::MatrixBase<Derived>& numbers) {

@@ -359,7 +359,7 @@ void ClothContacts::balance(const std::vector<Member>& group, const Points& x1, 
     if (untouched && !(floats && in_air) && merged.debt > little) {
         const auto at = [&](const Points& x) { return *energy(x, merged.v); };
         merged.debt =
-            takeFromWay(merged.debt, {0.75, 0.5, 0.25, 0.125, 0.0}, at, merged.x0, merged.x);
+            takeFromWay(merged.debt, {0.75, 0.5, 0.25, 0.125, 0.0}, at, merged.x0, merged.x).left;
     }
     merged.debt *= std::exp(-m_h / kForget);
 }

@@ -98,8 +98,8 @@ double lostInFall(const EnergyBalance::Share& share, double length) {
     return 0.5 * change * change / static_cast<double>(share.body->getInvMass());
 }
 
-/// Takes energy from the way that the cloth went, as far as that gets. Returns what is left.
-double holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
+/// Takes energy from the way that the cloth went, as far as that gets.
+TakenWay holdBack(const ClothStep& step, const EnergyBalance::Cloth& cloth, double surplus) {
     Points from = step.from.x;
     for (const int pin : step.garment.pins()) from.row(pin) = step.to.x.row(pin);
     const auto energy = [&](const Points& x) { return energyAt(step, cloth, x); };
@@ -140,7 +140,9 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     if (!energy || step.garment.has_goals() ||
         !(allSolidsKnown(step) || obstaclesStand(step.boundary))) {
         forget();
-        return {};
+        Result result;
+        result.unknown = !energy;
+        return result;
     }
     if (!m_elastic || !step.continues) {
         m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.from.x).value_or(0.0);
@@ -159,11 +161,13 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     m_elastic = cloth.mass_ratio * *energy;
     const bool borne = std::any_of(step.near.begin(), step.near.end(),
                                    [](const NearSolid& solid) { return !solid.body; });
+    const bool pressed = std::any_of(step.near.begin(), step.near.end(),
+                                     [](const NearSolid& solid) { return solid.body; });
     const bool anchored = std::any_of(shares.begin(), shares.end(),
                                       [](const Share& share) { return share.anchored; });
     const double little = 0.5 * cloth.masses.sum() * kSlow * kSlow;
     // Bullet pushes bodies that lie in hanging cloth about all the time, and that is work.
-    const bool piled = !shares.empty() && !borne && !anchored;
+    const bool piled = pressed && !borne && !anchored;
     const double made = motion + stored + m_debt, owed = std::max(0.0, made);
     // Contacts that push coarse cloth stretch it a little, which seldom becomes motion. It is paid
     // where it does: taken at once, it would be all of slow motion, and cloth creep as in honey.
@@ -186,13 +190,16 @@ EnergyBalance::Result EnergyBalance::balance(const ClothStep& step, const Cloth&
     left = limitGains(shares, left);
     if (!cloth.floats) left = brake(shares, left);
     if (piled) left = stopPressing(shares, left);
-    // Where nothing else bears a body, cloth that is held back would let it through.
-    result.held = left > little && borne;
+    // Where nothing else bears a body, cloth that is held back alone would let it through.
+    result.together = left > little && piled && cloth.bodies_wait;
+    result.held = result.together || (left > little && borne);
     if (result.held) {
-        left = holdBack(step, cloth, left);
+        const TakenWay taken = holdBack(step, cloth, left);
+        left = taken.left;
+        result.way = taken.part;
         m_elastic = cloth.mass_ratio * step.stepper.internal_energy(step.to.x).value_or(0.0);
     }
-    if (!piled) m_debt += left * std::exp(-step.length / kForget);
+    if (!piled || cloth.bodies_wait) m_debt += left * std::exp(-step.length / kForget);
     return result;
 }
 

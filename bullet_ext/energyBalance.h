@@ -15,7 +15,8 @@ namespace cloth {
 /// then from all motion of bodies that the cloth is anchored to, and from that of bodies that press
 /// into cloth which nothing else bears. Where the fabric itself took up more than that, and there
 /// is ground that can bear the bodies, the cloth does not go all the way: rather inside a body for
-/// a while than thrown.
+/// a while than thrown. Where nothing else bears the bodies, they go as far as the cloth, and keep
+/// that part of their motion.
 /// What would lift the cloth by little more than a centimetre, as contacts do that push it out, is
 /// owed there, and where bodies are anchored. Where no body can be pushed, what would lift it by a
 /// hundredth of its edges is paid when it becomes motion, all else by any motion.
@@ -46,15 +47,21 @@ class EnergyBalance {
         double mass_ratio;      ///< massRatio()
         double work;            ///< that the world put into it during the step (J)
         bool floats;            ///< nothing that cannot be pushed holds it
+        bool bodies_wait;       ///< bodies that press into it can be held back with it
     };
 
     struct Result {
-        bool much = false;     ///< the step made much more than there was in the cloth's motion
-        bool held = false;     ///< the cloth was held back
-        bool limited = false;  ///< impulses were changed
+        bool much = false;      ///< the step made much more than there was in the cloth's motion
+        bool held = false;      ///< the cloth was held back
+        bool together = false;  ///< and bodies that press into it have to be
+        double way = 1.0;       ///< part of its way that it went
+        bool limited = false;   ///< impulses were changed
+        bool unknown = false;   ///< the stepper does not know the fabric's energy
     };
     /// Takes energy that the step made from velocities and impulses, and from the way of the cloth.
     Result settle(const ClothStep& step, const Cloth& cloth, std::vector<Share>& shares);
+    /// The next step pays for what bodies got since (J).
+    void owe(double energy) { m_debt += energy; }
     /// The next step does not go on from the last one.
     void forget() { m_elastic.reset(); }
 

@@ -338,11 +338,13 @@ void SoftBodyStep::startClothStep(bool first_of_step) {
 }
 
 double SoftBodyStep::clothStepLength() const {
+    // Contacts move cloth by millimetres in a step, however short it is.
+    constexpr double kShortest = 1e-3, kNearly = 0.99 * kShortest;  // s
     const double own = looksAhead() ? m_stepper->fixed_dt() : m_h - m_cloth_step.begin;
-    const bool may_be_longer =
-        m_rate > 1 && m_stepper->accepts_any_dt() && !m_meeting && !hangsOnDynamicBody();
+    if (!m_stepper->accepts_any_dt() || m_meeting || hangsOnDynamicBody()) return own;
+    if (own < kNearly) return std::max(kShortest, m_rate * m_h);
     // A step of its own length that is nearly as long is better: a network is made for it.
-    return may_be_longer && m_rate * m_h > 1.5 * own ? m_rate * m_h : own;
+    return m_rate > 1 && m_rate * m_h > 1.5 * own ? m_rate * m_h : own;
 }
 
 bool SoftBodyStep::hangsOnDynamicBody() const {
@@ -454,11 +456,13 @@ void SoftBodyStep::endClothStep(BulletObstacles& obstacles) {
         m_reactions.collect({*m_garment, *m_stepper, m_boundary, from, m_cloth_step.to,
                              m_cloth_step.length, m_solids, m_pinched, m_continues,
                              m_hang ? &m_anchored : nullptr});
+    for (const btRigidBody* body : m_reactions.heldBodies()) obstacles.follow(*body);
     if (!alone) slowDown(obstacles);
     m_boundary = Boundary();  // large, where obstacles are meshes
     m_result.failed_steps += m_report.finite ? 0 : 1;
     m_result.caught_nodes = std::max(m_result.caught_nodes, m_pinched.caught());
     m_result.calmed |= m_reactions.calmed();
+    m_result.unbalanced |= m_reactions.unbalanced();
     ++m_result.steps;
 }
 

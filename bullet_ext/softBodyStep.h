@@ -79,6 +79,7 @@ class SoftBodyStep {
         int restored_nodes = 0;      ///< nodes that were not finite and were put back
         int caught_nodes = 0;        ///< nodes that pass through a solid, for want of room
         bool calmed = false;         ///< cloth and bodies would have made much energy
+        bool unbalanced = false;     ///< nobody knows whether they did
         bool without_goals = false;  ///< the garment has limits, and goals were never given
         int stretched_anchor = -1;   ///< node that an anchor holds farther than the cloth reaches
         int idle_anchor = -1;        ///< node of an anchor that does nothing, see linkAnchors()

@@ -17,20 +17,20 @@ double takeFromMotion(double surplus, const VectorX& masses, bool floats, Points
     return surplus - taken;
 }
 
-double takeFromWay(double surplus, std::initializer_list<double> parts,
-                   const std::function<double(const Points&)>& energy, const Points& from,
-                   Points& x) {
+TakenWay takeFromWay(double surplus, std::initializer_list<double> parts,
+                     const std::function<double(const Points&)>& energy, const Points& from,
+                     Points& x) {
     const double whole = energy(x);
     Points best = x;
-    double taken = 0.0;
+    double taken = 0.0, gone = 1.0;
     for (const double part : parts) {
         if (taken >= surplus) break;
         const Points on_the_way = from + part * (x - from);
         const double less = whole - energy(on_the_way);
-        if (less > taken) taken = less, best = on_the_way;
+        if (less > taken) taken = less, gone = part, best = on_the_way;
     }
     x = best;
-    return std::max(0.0, surplus - taken);
+    return {std::max(0.0, surplus - taken), gone};
 }
 
 }  // namespace cloth

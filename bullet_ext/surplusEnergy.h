@@ -15,15 +15,19 @@ namespace cloth {
 /// @return what could not be taken (J), 0 or more
 double takeFromMotion(double surplus, const VectorX& masses, bool floats, Points& v);
 
+struct TakenWay {
+    double left;  ///< what could not be taken (J), 0 or more
+    double part;  ///< of the way that is gone
+};
+
 /// Takes energy from the way of cloth, which does not go all of it.
 /// @param surplus  (J)
 /// @param parts    of the way, falling: the first that takes enough, or the one that takes most
 /// @param energy   (J) of a shape of the cloth
 /// @param from     |V| x 3 (m)
 /// @param x        |V| x 3 (m): the end of the way
-/// @return what could not be taken (J), 0 or more
-double takeFromWay(double surplus, std::initializer_list<double> parts,
-                   const std::function<double(const Points&)>& energy, const Points& from,
-                   Points& x);
+TakenWay takeFromWay(double surplus, std::initializer_list<double> parts,
+                     const std::function<double(const Points&)>& energy, const Points& from,
+                     Points& x);
 
 }  // namespace cloth

@@ -60,7 +60,8 @@ void TwoWayCoupling::collect(const ClothStep& step) {
         entry.second.lift = 0.0;
         entry.second.sides = {};
     }
-    m_calmed = m_held_back = false;
+    m_calmed = m_held_back = m_unbalanced = false;
+    m_held_bodies.clear();
     m_floats = floatsFreely(m_body, step) && allSolidsKnown(step);
     if (step.near.empty() && m_body.m_anchors.size() == 0 && linkAnchors(m_body).empty()) {
         m_accounts.clear();
@@ -431,6 +432,48 @@ double TwoWayCoupling::workFromOutside(const ClothStep& step) const {
     return work;
 }
 
+/// Whether a body may have pushed the cloth in this step. Where it did, no node need touch it now.
+bool TwoWayCoupling::presses(const ClothStep& step, const NearSolid& solid) const {
+    if (!solid.body) return false;
+    const auto found = m_accounts.find(solid.body);
+    if (found != m_accounts.end() && found->second.anchored) return false;
+    if (found != m_accounts.end() && !found->second.nodes.empty()) return true;
+    const double reach = step.garment.mean_edge_length();
+    for (Eigen::Index i = 0; i < step.to.x.rows(); ++i)
+        if (solid.distance(step.to.x.row(i), reach)) return true;
+    return false;
+}
+
+/// Whether bodies that press into the cloth are where its step ends: one that looks ahead, past
+/// the end of the world step, only foresees them there.
+bool TwoWayCoupling::bodiesWait(const ClothStep& step) const {
+    constexpr double kSame = 1e-4;  // m
+    return std::all_of(step.near.begin(), step.near.end(), [&](const NearSolid& solid) {
+        const bool is_there =
+            !solid.body ||
+            (solid.inverse.inverse().translation() - centreOf(*solid.body)).norm() < kSame;
+        return is_there || !presses(step, solid);
+    });
+}
+
+/// Puts bodies that press into the cloth on a part of the way that Bullet moved them, as the cloth
+/// is, and leaves them that part of their motion. What it lifts them by, the next step pays.
+void TwoWayCoupling::holdBodies(const ClothStep& step, double way) {
+    for (const NearSolid& solid : step.near) {
+        if (!presses(step, solid)) continue;
+        btRigidBody& body = *solid.body;
+        const Pose before = solid.inverse_before.inverse(), now = solid.inverse.inverse();
+        const Pose held = interpolate(before, now, way);
+        const Vec3 back = held.translation() - now.translation();
+        m_energy.owe(-toVec3(body.getGravity()).dot(back) / body.getInvMass());
+        Account& account = m_accounts[&body];
+        account.plan_time = step.length;
+        account.planned -= (1.0 - way) * (massMatrix(body) * motionOf(body) + account.planned);
+        body.setCenterOfMassTransform(toBullet(held));
+        m_held_bodies.push_back(&body);
+    }
+}
+
 /// Hands the planned impulses to the balance of energy. Anchored nodes move with their bodies, also
 /// where it took some of them.
 void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
@@ -440,10 +483,12 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
         shares.push_back({body, &account.planned, account.anchored, account.lift});
         momentum -= account.planned.head<3>();
     }
-    const EnergyBalance::Result result =
-        m_energy.settle(step, {m_masses, m_mass_ratio, workFromOutside(step), m_floats}, shares);
+    const EnergyBalance::Result result = m_energy.settle(
+        step, {m_masses, m_mass_ratio, workFromOutside(step), m_floats, bodiesWait(step)}, shares);
     m_calmed = result.much && !m_accounts.empty();
+    m_unbalanced = result.unknown && !m_accounts.empty();
     m_held_back = result.held;
+    if (result.together) holdBodies(step, result.way);
     for (auto& [body, account] : m_accounts) account.gain = gainOf(*body, account.planned);
     if (!result.limited) return;
     for (const auto& [body, account] : m_accounts) momentum += account.planned.head<3>();

@@ -63,8 +63,13 @@ class TwoWayCoupling {
     /// Whether the last cloth step would have made energy, more than rounding and unconverged
     /// steps do, which was taken away.
     bool calmed() const { return m_calmed; }
+    /// Whether bodies got something in the last cloth step that was not balanced, for the stepper
+    /// does not know its energy.
+    bool unbalanced() const { return m_unbalanced; }
     /// Whether the cloth was held back for that, and may be inside a body.
     bool heldBack() const { return m_held_back; }
+    /// Bodies that were held back with it: Bullet had moved them farther.
+    const std::vector<const btRigidBody*>& heldBodies() const { return m_held_bodies; }
 
  private:
     /// Cloth that follows the body: at a place of it (m, from its centre), with a part of its mass.
@@ -113,6 +118,9 @@ class TwoWayCoupling {
     void settle(const ClothStep& step, btRigidBody& body, Account& account);
     void returnToCloth(const ClothStep& step, const Vec3& impulse);
     void balanceEnergy(const ClothStep& step);
+    bool presses(const ClothStep& step, const NearSolid& solid) const;
+    bool bodiesWait(const ClothStep& step) const;
+    void holdBodies(const ClothStep& step, double way);
     double workFromOutside(const ClothStep& step) const;
 
     btSoftBody& m_body;
@@ -132,7 +140,8 @@ class TwoWayCoupling {
     bool m_internal_known = false;
     Vec3 m_last_impulse = Vec3::Zero();
     bool m_floats = false;  ///< nothing but bodies that can be pushed holds the cloth
-    bool m_calmed = false, m_held_back = false;
+    bool m_calmed = false, m_held_back = false, m_unbalanced = false;
+    std::vector<const btRigidBody*> m_held_bodies;
 };
 
 }  // namespace cloth

@@ -387,6 +387,31 @@ TEST(BulletObstacles, AnimatedMeshReplacesTheShapeAndIsInterpolated) {
     EXPECT_EQ(scene.obstacles().at(0).shape, ObstacleShape::sphere);
 }
 
+TEST(BulletObstacles, AnAnimatedMeshThatJumpsAwayFromClothIsTold) {
+    Scene scene;
+    btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
+    const auto faces = one_face();
+    const auto give = [&](double from, double to) {
+        scene.solver.setAnimatedObstacle(handle, faces, triangle(from), triangle(to), 1.0 / 60.0);
+        scene.world.step(1.0 / 60.0);
+        return scene.solver.status().messages.size();
+    };
+    give(0.0, 0.0);
+    EXPECT_EQ(give(0.0, 0.6), 0u) << "it goes there in a step";
+    EXPECT_EQ(give(0.6, 0.0), 0u);
+    EXPECT_EQ(give(0.4, 0.4), 0u);
+    EXPECT_EQ(give(0.0, 0.0), 0u);
+    EXPECT_EQ(give(9.0, 9.0), 1u);
+    EXPECT_NE(scene.solver.status().messages[0].text.find("teleport()"), std::string::npos);
+    EXPECT_EQ(give(0.0, 0.0), 1u) << "no cloth is where it was";
+    EXPECT_EQ(scene.solver.status().messages[0].count, 1);
+    scene.world.step(1.0 / 60.0);
+    EXPECT_EQ(scene.solver.status().messages[0].count, 1) << "it was not given anew";
+    scene.solver.teleport(scene.cloth, btTransform::getIdentity());
+    give(9.0, 9.0);
+    EXPECT_EQ(scene.solver.status().messages[0].count, 1) << "its cloth was put elsewhere, too";
+}
+
 TEST(BulletObstacles, AnimatedMeshLeavesTheWorldWithItsObject) {
     Scene scene;
     btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
@@ -438,14 +463,17 @@ TEST(BulletObstacles, LimbsOfAnAnimatedMeshReachTheStepper) {
 TEST(BulletObstacles, BadAnimatedMeshesAreRefused) {
     Scene scene;
     btRigidBody* handle = scene.world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
-    const auto set = [&](std::shared_ptr<const Faces> faces, Points x0, Points x1) {
-        scene.solver.setAnimatedObstacle(handle, faces, x0, x1);
+    const auto set = [&](std::shared_ptr<const Faces> faces, Points x0, Points x1, double h = 0) {
+        scene.solver.setAnimatedObstacle(handle, faces, x0, x1, h);
     };
     EXPECT_THROW(set(nullptr, triangle(0), triangle(0)), ArgumentError);
     EXPECT_THROW(set(one_face(), triangle(0), Points(2, 3)), ArgumentError);
     EXPECT_THROW(set(one_face(), Points::Zero(2, 3), Points::Zero(2, 3)), ArgumentError);
     const Points nan = triangle(std::numeric_limits<double>::quiet_NaN());
     EXPECT_THROW(set(one_face(), nan, nan), ArgumentError);
+    for (const double h :
+         {-1.0, std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(set(one_face(), triangle(0), triangle(0), h), ArgumentError);
 }
 
 }  // namespace cloth::bullet_obstacles_test

@@ -11,13 +11,15 @@ namespace cloth::test {
 
 /// Measures the energy of cloth and rigid bodies around each world step of the cloth. What Bullet
 /// does to its bodies before that, such as lifting them out of each other, does not count. But what
-/// bodies that hang on the cloth have lost in Bullet's step, as bodies do that fall, may come back.
+/// bodies that hang or lie on the cloth have lost in Bullet's step, as bodies do that fall, may
+/// come back.
 class MeteredSolver : public btGnnSoftBodySolver {
  public:
     using btGnnSoftBodySolver::btGnnSoftBodySolver;
 
     std::vector<btRigidBody*> bodies;  ///< that count
     btSoftBody* cloth = nullptr;       ///< that counts
+    bool bears_all = false;            ///< the cloth alone bears the bodies
 
     /// Energy of motion and height that the steps of the cloth have made out of nothing at most, up
     /// to any moment, less what they have taken away till then (J).
@@ -64,11 +66,11 @@ class MeteredSolver : public btGnnSoftBodySolver {
         return sum + m_moving;
     }
 
-    /// Motion and height of bodies that are anchored to the cloth (J).
+    /// Motion and height of bodies that the cloth alone bears (J).
     double ofHanging() const {
         double sum = 0.0;
         for (const btRigidBody* body : bodies)
-            if (isAnchored(*body)) sum += kinetic(*body) + height(*body);
+            if (bears_all || isAnchored(*body)) sum += kinetic(*body) + height(*body);
         return sum;
     }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bullet_ext/softBodyGarment.h"
 #include "gnn/model/make_cloth.h"
@@ -165,6 +166,43 @@ TEST_F(StretchedSheet, ACutAndATeleportInOneFrameKeepItsRestArea) {
     EXPECT_LT(fastest(*cloth), 10.0);
     EXPECT_EQ(solver.status().failedSteps, 0);
     EXPECT_TRUE(solver.status().messages.empty());
+}
+
+// As a game does that goes back to a saved moment, or repeats frames.
+TEST_F(SheetOnABall, AttachedAnewItForgetsWhatCameBetween) {
+    btRigidBody* pusher = world.add(new btSphereShape(0.1f), {0.6f, 0.3f, 0}, true);
+    const auto run = [&](float way) {
+        for (int i = 0; i < 20; ++i) {
+            const btScalar x = 0.6f - way * static_cast<float>(i) / 20;
+            pusher->setWorldTransform(btTransform(btQuaternion::getIdentity(), {x, 0.3f, 0}));
+            world.step(1.0 / 60.0);
+        }
+        return nodePositions(*cloth);
+    };
+    run(0.2f);
+    std::vector<btVector3> places, velocities;
+    for (int i = 0; i < cloth->m_nodes.size(); ++i) {
+        places.push_back(cloth->m_nodes[i].m_x);
+        velocities.push_back(cloth->m_nodes[i].m_v);
+    }
+    const auto go_back = [&] {
+        pusher->setWorldTransform(btTransform(btQuaternion::getIdentity(), {0.6f, 0.3f, 0}));
+        world.step(1.0 / 60.0, 2);  // the pusher stands there
+        for (int i = 0; i < cloth->m_nodes.size(); ++i) {
+            btSoftBody::Node& node = cloth->m_nodes[i];
+            node.m_x = node.m_q = places[static_cast<size_t>(i)];
+            node.m_v = velocities[static_cast<size_t>(i)];
+        }
+        solver.attach(cloth, Garment(*solver.garmentOf(cloth)));
+    };
+    go_back();
+    const Points first = run(0.5f);
+    go_back();
+    EXPECT_EQ(run(0.5f), first);
+    go_back();
+    EXPECT_NE(run(0.3f), first);
+    go_back();
+    EXPECT_EQ(run(0.5f), first);
 }
 
 TEST_F(SheetOnABall, ItIsHandedOverWithoutAKick) {

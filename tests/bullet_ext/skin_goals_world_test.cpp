@@ -169,6 +169,15 @@ TEST(SkinGoalsWorld, WrongArgumentsAreRefusedWithTheBodysName) {
     btTransform nowhere = btTransform::getIdentity();
     nowhere.setOrigin({std::numeric_limits<float>::quiet_NaN(), 0, 0});
     EXPECT_THROW(solver.teleport(body, nowhere), ArgumentError);
+    const btTransform still = btTransform::getIdentity();
+    const btMatrix3x3 turn(btQuaternion({0, 0, 1}, 1));
+    for (const btVector3& scale : {btVector3(2, 2, 2), btVector3(0.01f, 0.01f, 0.01f),
+                                   btVector3(-1, 1, 1), btVector3(0, 0, 0)}) {
+        const btTransform scaled(turn.scaled(scale));
+        EXPECT_THROW(solver.teleport(body, scaled), ArgumentError);
+        EXPECT_THROW(solver.setRootMotion(body, still, scaled), ArgumentError);
+    }
+    EXPECT_NO_THROW(solver.setRootMotion(body, still, btTransform(turn)));
     try {
         solver.setGoals(body, SkinGoals::at(x.topRows(4)));
     } catch (const ArgumentError& error) {
@@ -227,6 +236,23 @@ TEST(SkinGoalsWorld, ATeleportMovesAllAndDragsNothing) {
         EXPECT_EQ(solver.status().cutSteps, 0);
         EXPECT_TRUE(solver.status().messages.empty());
     }
+}
+
+TEST(SkinGoalsWorld, AResetNeedsGoalsAndNoLimits) {
+    btGnnSoftBodySolver solver(quasi_newton());
+    World world(&solver);
+    btSoftBody* body = world.add(patch(world.info(), {0, 1, 0}, 7, 1 + 2));
+    const Points goals = nodePositions(*body);
+    world.step(1.0 / 60.0, 12);
+    const Points fallen = nodePositions(*body);
+    const btTransform still = btTransform::getIdentity();
+    solver.teleport(body, still, btGnnTeleport::reset);
+    EXPECT_LT(farthest(*body, fallen), floats);
+    EXPECT_TRUE(says(solver, "no goals"));
+    solver.setGoals(body, SkinGoals::at(goals));
+    solver.teleport(body, still, btGnnTeleport::reset);
+    EXPECT_LT(farthest(*body, goals), floats);
+    EXPECT_EQ(body->m_nodes[20].m_v.length(), 0);
 }
 
 TEST(SkinGoalsWorld, GoalsThatMoveWakeTheCloth) {

@@ -158,4 +158,27 @@ TEST(TimeSteps, PinsInWindMoveByTheirVelocity) {
     EXPECT_NEAR(node(*cloth, 0).x() - before, 0.01, 1e-5);
 }
 
+// Contacts move coarse cloth by millimetres in each step: in a step of microseconds that would be
+// hundreds of metres in a second.
+TEST(TimeSteps, WorldStepsOfMicrosecondsThrowNothing) {
+    for (const double shortest : {1e-3, 1e-4, 1e-5, 1e-6}) {
+        btGnnSoftBodySolver solver(
+            [](const Garment& garment) { return std::make_unique<ClothStepper>(garment); });
+        World world(&solver);
+        world.add(new btBoxShape({0.2f, 0.2f, 0.2f}), {0, 0, 0});
+        btSoftBody* cloth = world.add(patch(world.info(), {0.05f, 0.25f, 0.03f}, 11));
+        double fastest = 0.0, before = 0.0;
+        for (int i = 0; i < 40; ++i) {
+            world.step(1.0 / 60.0);
+            before = fastest_node(*cloth);
+            for (int k = 0; k < 3; ++k) {
+                world.step(shortest);
+                fastest = std::max(fastest, fastest_node(*cloth) - before);
+            }
+        }
+        EXPECT_LT(fastest, 4.0) << shortest;
+        EXPECT_EQ(solver.status().failedSteps, 0);
+    }
+}
+
 }  // namespace cloth::time_step_test

@@ -147,6 +147,12 @@ TEST_F(GuideSnippets, Fabric) {
     expect_stepped();
 }
 
+TEST_F(GuideSnippets, GoingBack) {
+    solver.attach(body);
+    solver.attach(body, cloth::Garment(*solver.garmentOf(body)));
+    expect_stepped();
+}
+
 TEST_F(GuideSnippets, ClothesThatFollowTheSkin) {
     const double now = 0.0, dt = 1.0 / 30.0;
     const cloth::WeldedCharacter character(cloth::model_path("glTF2/simple_skin/simple_skin.gltf"),

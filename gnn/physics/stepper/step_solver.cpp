@@ -156,7 +156,9 @@ StepReport StepSolver::in_small_steps(int count, const Boundary& boundary, doubl
 }
 
 double StepSolver::fixed_dt() const {
-    return !m_start || start_for(1.0 / m_settings.small_step_rate) ? 0.0 : m_start->fixed_dt();
+    const double rate = m_settings.small_step_rate;
+    const bool for_small_steps = m_start && rate > 0.0 && start_for(1.0 / rate);
+    return !m_start || for_small_steps ? 0.0 : m_start->fixed_dt();
 }
 
 StepStart* StepSolver::start_for(double dt) const {
