@@ -10,7 +10,8 @@ struct StickMemory {
     VectorX energy;  ///< |V| (J): that friction stores with it
 };
 
-/// Everything about a garment that changes. A copy is a checkpoint.
+/// What changes about a garment. A copy is a checkpoint for a new stepper: one that has taken other
+/// steps since remembers those, such as which limbs the cloth passed through.
 struct ClothState {
     Points x;           ///< positions (|V| x 3, m)
     Points v;           ///< velocities (|V| x 3, m/s): (x_t - x_{t-1}) / dt
