@@ -153,6 +153,19 @@ TEST(TwoWayCoupling, ABoxAnchoredToXpbdClothFeelsNothingOfIt) {
     EXPECT_LT(node(*cloth, 24).y(), -1.0);
 }
 
+TEST(TwoWayCoupling, ThatXpbdIsNotBalancedIsToldWhereABodyLandsOnIt) {
+    btGnnSoftBodySolver solver(
+        [](const Garment& garment) { return std::make_unique<XpbdStepper>(garment); });
+    World world(&solver);
+    world.add(new btSphereShape(0.15f), {0, 0.25f, 0}, false, 0.1f);
+    world.add(patch(world.info(), {0, 0, 0}, 11, 1 + 2 + 4 + 8));
+    world.step(1.0 / 60.0);
+    EXPECT_TRUE(solver.status().messages.empty()) << "it is in the air";
+    world.step(1.0 / 60.0, 30);
+    ASSERT_EQ(solver.status().messages.size(), 1u);
+    EXPECT_NE(solver.status().messages[0].text.find("does not know its energy"), std::string::npos);
+}
+
 // The middle of the patch and a corner, which weighs a fraction of the middle.
 TEST(TwoWayCoupling, AWeakAnchorPullsBothEnds) {
     for (const Case& c : kCases)
