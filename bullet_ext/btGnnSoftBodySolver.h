@@ -208,9 +208,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// Gives the root's motion before each stepSimulation(), such as that of the character's hips;
     /// a root that is not given anew stands still.
     /// @param from, to  now and after `duration` seconds, in the world
-    /// @throws cloth::ArgumentError if the body is null, a number is not finite, or a pose does
-    /// more
-    ///         than turn and move
+    /// @throws cloth::ArgumentError if the body is null, a number is not finite, or a pose scales
     void setRootMotion(btSoftBody* body, const btTransform& from, const btTransform& to,
                        double duration = 0.0);
     /// How much a body's cloth may cost from now on; switch it whenever you like: nothing jumps.
@@ -272,9 +270,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     /// keep: all nodes are moved by `motion`, and what they did turns with them. reset: they are
     /// put on their goals, moved by `motion`, and rest. That needs goals, limited or not; a body
     /// without goals keeps its shape, with a message, and rests.
-    /// @throws cloth::ArgumentError if the body is null, the motion is not finite, or does more
-    /// than
-    ///         turn and move
+    /// @throws cloth::ArgumentError if the body is null, or the motion is not finite or scales
     void teleport(btSoftBody* body, const btTransform& motion,
                   btGnnTeleport kind = btGnnTeleport::keep);
 

@@ -27,12 +27,6 @@ bool isInWorld(const btCollisionObject& object) {
     return object.getBroadphaseHandle() != nullptr;
 }
 
-/// Whether a mesh of so many vertices (m) was put elsewhere: nobody moves as far in no time.
-bool hasJumped(const Points& from, const Points& to) {
-    constexpr double kJump = 0.5;  // m
-    return from.rows() == to.rows() && (to - from).rowwise().squaredNorm().mean() > kJump * kJump;
-}
-
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
@@ -148,7 +142,7 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
     const auto known = m_animated.find(object);
     animation.was_in_world =
         isInWorld(*object) || (known != m_animated.end() && known->second.was_in_world);
-    if (known != m_animated.end() && hasJumped(known->second.now(), animation.mesh.x0))
+    if (known != m_animated.end() && known->second.jumpsTo(animation.mesh.x0))
         animation.jumped_from = known->second.box1;
     m_animated.insert_or_assign(object, std::move(animation));
 }
@@ -329,9 +323,12 @@ bool BulletObstacles::Animation::near(const Vec3& low, const Vec3& high) const {
     return box0.overlaps(low, high) || box1.overlaps(low, high);
 }
 
-Points BulletObstacles::Animation::now() const {
+bool BulletObstacles::Animation::jumpsTo(const Points& x) const {
+    constexpr double kJump = 0.5;  // m
+    if (x.rows() != mesh.x0.rows()) return false;
     const double share = mesh.duration > 0.0 ? std::min(end / mesh.duration, 1.0) : 1.0;
-    return mesh.x0 + share * (mesh.x1 - mesh.x0);
+    const auto from = mesh.x0 + share * (mesh.x1 - mesh.x0);
+    return (x - from).rowwise().squaredNorm().mean() > kJump * kJump;
 }
 
 bool BulletObstacles::anyJumpsFrom(const Vec3& low, const Vec3& high) const {

@@ -163,8 +163,9 @@ class BulletObstacles {
         bool was_in_world = false;       ///< its object was, at some time
         double begin = 0.0, end = 0.0;   ///< the present world step, counted from x0 (s)
         bool near(const Vec3& low, const Vec3& high) const;
-        /// Where it is at the end of the present world step (|V| x 3, m).
-        Points now() const;
+        /// Whether it jumps if it starts there (|V| x 3, m) after the present world step: nobody
+        /// moves as far in no time.
+        bool jumpsTo(const Points& x) const;
         /// A mesh that was not given anew stands still; one that was is assumed to go on as it
         /// does.
         bool stands() const { return begin >= mesh.duration * 0.999; }

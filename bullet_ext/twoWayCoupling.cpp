@@ -488,7 +488,7 @@ void TwoWayCoupling::balanceEnergy(const ClothStep& step) {
     m_calmed = result.much && !m_accounts.empty();
     m_unbalanced = result.unknown && !m_accounts.empty();
     m_held_back = result.held;
-    if (result.together) holdBodies(step, result.way);
+    if (result.together && result.way < 1.0) holdBodies(step, result.way);
     for (auto& [body, account] : m_accounts) account.gain = gainOf(*body, account.planned);
     if (!result.limited) return;
     for (const auto& [body, account] : m_accounts) momentum += account.planned.head<3>();

@@ -9,13 +9,19 @@
 
 namespace cloth {
 
-std::vector<std::string> validation_clips() {
+/// All of the shared data folder, or the one that is always there.
+static std::vector<std::string> all_clips(const std::string& other_remedy) {
     const auto folder = shared_data_path("motions/validation");
     if (!folder) return {"01_01"};
-    std::vector<std::string> files = list_motions(*folder);
-    if (files.empty())
+    std::vector<std::string> clips = list_motions(*folder);
+    if (clips.empty())
         throw LoadError(*folder, "", "has no motion to validate with",
-                        "put BVH files there, or name another folder by CLOTH_SHARED_DATA");
+                        "put BVH files there, or " + other_remedy);
+    return clips;
+}
+
+std::vector<std::string> validation_clips() {
+    std::vector<std::string> files = all_clips("name another folder by CLOTH_SHARED_DATA");
     const std::vector<std::string> wanted = {"07_02", "16_35"};
     const bool has_them = std::all_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
         return std::any_of(files.begin(), files.end(), [&](const std::string& file) {
@@ -29,13 +35,7 @@ std::vector<std::string> validation_clips() {
 }
 
 std::vector<std::string> default_rollout_clips() {
-    const auto folder = shared_data_path("motions/validation");
-    if (!folder) return {"01_01"};
-    std::vector<std::string> clips = list_motions(*folder);
-    if (clips.empty())
-        throw LoadError(*folder, "", "has no motion to validate with",
-                        "put BVH files there, or give --validation-clips");
-    return clips;
+    return all_clips("give --validation-clips");
 }
 
 static void check_clip(const std::string& clip) {

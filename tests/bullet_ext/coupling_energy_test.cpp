@@ -241,6 +241,16 @@ void check(unsigned first, int count, double seconds, const Bounds& bounds, cons
     EXPECT_LE(rare_count, bounds.rare) << rare;
 }
 
+/// One body or two over the sheet, the second one higher by `gap` (m).
+void drop_bodies(Dice& dice, World& world, MeteredSolver& solver, const Sheet& sheet, double y,
+                 double gap) {
+    for (int k = 1 + dice.below(2); k > 0; --k, y += gap)
+        solver.bodies.push_back(any_body(dice, world,
+                                         {real(dice.between(-0.5, 0.5) * sheet.half), real(y),
+                                          real(dice.between(-0.5, 0.5) * sheet.half)},
+                                         0.1, 100.0));
+}
+
 void landing(Dice& dice, World& world, MeteredSolver& solver) {
     if (dice.below(2) == 0)
         world.add(new btBoxShape({4, 0.5f, 4}), {0, -0.5f, 0});
@@ -248,12 +258,7 @@ void landing(Dice& dice, World& world, MeteredSolver& solver) {
         world.add(new btStaticPlaneShape({0, 1, 0}, 0), {0, 0, 0});
     const Sheet sheet = any_sheet(dice, world, 0.01, 0);
     solver.cloth = sheet.cloth;
-    double y = 0.3 + dice.log_between(0.01, 0.6);
-    for (int k = 1 + dice.below(2); k > 0; --k, y += 0.5)
-        solver.bodies.push_back(any_body(dice, world,
-                                         {real(dice.between(-0.5, 0.5) * sheet.half), real(y),
-                                          real(dice.between(-0.5, 0.5) * sheet.half)},
-                                         0.1, 100.0));
+    drop_bodies(dice, world, solver, sheet, 0.3 + dice.log_between(0.01, 0.6), 0.5);
 }
 
 /// Bodies fall on a sheet that hangs by its corners or all of its border, over nothing.
@@ -266,12 +271,7 @@ void trampoline(Dice& dice, World& world, MeteredSolver& solver) {
             for (const int node :
                  {i, sheet.n * (sheet.n - 1) + i, i * sheet.n, i * sheet.n + sheet.n - 1})
                 sheet.cloth->setMass(node, 0);
-    double y = 1.3 + dice.log_between(0.01, 0.8);
-    for (int k = 1 + dice.below(2); k > 0; --k, y += 0.6)
-        solver.bodies.push_back(any_body(dice, world,
-                                         {real(dice.between(-0.5, 0.5) * sheet.half), real(y),
-                                          real(dice.between(-0.5, 0.5) * sheet.half)},
-                                         0.1, 100.0));
+    drop_bodies(dice, world, solver, sheet, 1.3 + dice.log_between(0.01, 0.8), 0.6);
 }
 
 /// A body somewhere beside a corner or an edge, some nodes of which are anchored to it.
