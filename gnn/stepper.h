@@ -137,6 +137,15 @@ class Stepper {
         return false;
     }
 
+    /// Where the next step's iterations start (|V| x 3, m), if it is taken whole, and if that is of
+    /// less energy than where they would: the end of a step from the same state that differs
+    /// little.
+    /// @return  false: this stepper starts where it does
+    virtual bool start_next_at(const Points& x) {
+        (void)x;
+        return false;
+    }
+
     /// Whether contact projection keeps edges and faces out of obstacles from now on, as it does at
     /// first, or vertices alone, which costs less: for a garment that is not shown. max_penetration
     /// is then that of vertices.

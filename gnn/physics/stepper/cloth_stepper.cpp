@@ -145,7 +145,10 @@ bool ClothStepper::internal_forces(const Points& x, Points& forces) const {
 }
 
 StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& state) {
-    if (!is_valid_step(*m_garment, state, boundary, dt)) return StepReport::failed();
+    if (!is_valid_step(*m_garment, state, boundary, dt)) {
+        m_solver->start_next_at(Points());
+        return StepReport::failed();
+    }
     m_deadline = std::isinf(m_max_ms) ? Deadline() : Deadline::in(kOfLimit * m_max_ms);
     m_trees->begin_step();
     if (!m_guard.limbs) return guarded_step(boundary, dt, state);
@@ -188,7 +191,7 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
         }
     }  // better the first step than none
     report.out_of_time = report.out_of_time || shortened;
-    if (report.finite && lag.parts > 1) {
+    if (report.finite && lag.parts > 0) {
         if (goes_on) std::swap(m_lag_before, m_lag);
         std::swap(m_lag, lag);
     }
@@ -208,9 +211,8 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     if (is_watched()) m_start = state;
     const int wanted = m_solver->small_steps(dt, state);
     const int small_steps = affordable_small_steps(wanted);
-    StepReport report = small_steps > 1   ? take_small_steps(small_steps, boundary, dt, state)
-                        : is_made_for(dt) ? m_solver->whole(boundary, dt, state)
-                                          : m_solver->part(boundary, dt, m_guard.iterations, state);
+    StepReport report = small_steps > 1 ? take_small_steps(small_steps, boundary, dt, state)
+                                        : take_one(boundary, dt, state);
     if (search_it && report.finite) search(boundary, dt, Neighbours::stay, state, report);
     if (should_search && !search_it) {
         report.out_of_time = true;
@@ -226,16 +228,39 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
     return report;
 }
 
+StepReport ClothStepper::take_one(const Boundary& boundary, double dt, ClothState& state) {
+    const bool lags = keeps_lag(1);
+    if (lags) {
+        m_state.v = state.v;
+        add_lag(1, dt, state);
+        m_next_lag.v = state.v;
+        if (is_watched()) m_start.v = state.v;
+    }
+    const StepReport report = is_made_for(dt)
+                                  ? m_solver->whole(boundary, dt, state)
+                                  : m_solver->part(boundary, dt, m_guard.iterations, state);
+    if (!lags) return report;
+    if (report.finite) {
+        m_next_lag.v = 0.5 * (state.v - m_next_lag.v);
+        keep_lag(1, dt, state.x);
+    } else {
+        state.v = m_state.v;
+    }
+    return report;
+}
+
 StepReport ClothStepper::take_small_steps(int count, const Boundary& boundary, double dt,
                                           ClothState& state) {
     m_state.v = state.v;
-    add_lag(count, state);
+    add_lag(count, dt, state);
     const auto from = is_made_for(dt) ? StepSolver::From::start : StepSolver::From::guess;
     const StepReport report = m_solver->in_small_steps(count, boundary, dt, from, state);
-    if (report.finite)
-        keep_lag(count, m_solver->end_velocity(), state);
-    else
+    if (report.finite) {
+        m_next_lag.v = m_solver->end_velocity() - state.v;
+        keep_lag(count, dt, state.x);
+    } else {
         state.v = m_state.v;
+    }
     return report;
 }
 
@@ -249,9 +274,10 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     StepReport report;
     report.converged = true;
     report.substeps = substeps;
+    m_solver->start_next_at(Points());  // it is that of a whole step
     m_state = state;
     const int all_steps = substeps * std::max(1, small_steps_of_part(cut, dt / substeps));
-    add_lag(all_steps, m_state);
+    add_lag(all_steps, dt, m_state);
     // What is cut because the settings say so obeys the settings' limits.
     const IterationLimits& own = m_solver->settings().quasi_newton;
     const IterationLimits& limits = substeps <= m_substeps ? own : m_guard.iterations;
@@ -274,39 +300,49 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     m_state.time = state.time + dt;
     m_next_lag.v = m_state.v;
     m_state.v = (m_state.x - state.x) / dt;
-    keep_lag(all_steps, m_next_lag.v, m_state);
+    m_next_lag.v -= m_state.v;
+    keep_lag(all_steps, dt, m_state.x);
     std::swap(state, m_state);
     return report;
 }
 
-/// Of a constant acceleration a, the last of N parts ends faster than the mean by
-/// (N - 1) / 2N a dt; so a step of N parts may follow one of another number. Where a step is cut
-/// for its motion alone, another number goes without: what is lost damps what moves so fast.
-void ClothStepper::add_lag(int parts, ClothState& state) const {
-    if (parts == 1) return;
-    const auto share = [](int count) { return static_cast<double>(count - 1) / count; };
+/// Whether a step of so many parts may follow one of another number. Whole steps that were cut for
+/// their motion alone go on without: what is lost damps what moves so fast.
+bool ClothStepper::keeps_lag(int parts) const {
+    const bool changes = m_solver->settings().small_step_rate > 0.0 && m_substeps == 1;
+    return changes || parts > 1;
+}
+
+/// Mean velocities of steps dt and dt' long differ by a (dt + dt') / 2 under a constant
+/// acceleration a. The mean of N' parts is faster than where they start by a dt' (N' + 1) / 2N', so
+/// they start a (dt - dt' / N') / 2 faster than the mean before; the last of the N parts of that
+/// ended faster than it by a dt (N - 1) / 2N. Where steps are equal, each starts where the last one
+/// ended.
+void ClothStepper::add_lag(int parts, double dt, ClothState& state) const {
     for (const Lag* lag : {&m_lag, &m_lag_before}) {
-        if (lag->parts < 2 || !same_points(lag->x, state.x)) continue;
-        if (lag->parts == parts)
-            state.v += lag->v;
-        else if (m_solver->settings().small_step_rate > 0.0 && m_substeps == 1)
-            state.v += share(parts) / share(lag->parts) * lag->v;
+        if (lag->parts < 1 || !same_points(lag->x, state.x)) continue;
+        const bool as_before = parts == lag->parts && dt == lag->dt;
+        if (as_before && parts > 1) state.v += lag->v;
+        if (as_before || (parts != lag->parts && !keeps_lag(1))) return;
+        const double share = lag->parts > 1 ? 1.0 - 1.0 / lag->parts : 1.0;
+        state.v += (lag->dt - dt / parts) / (lag->dt * share) * lag->v;
         return;
     }
 }
 
 void ClothStepper::moved(const Points& before, const Points& after, const Eigen::Matrix3d& turn) {
     for (Lag* lag : {&m_lag, &m_lag_before}) {
-        if (lag->parts < 2 || !same_points(lag->x, before)) continue;
+        if (lag->parts < 1 || !same_points(lag->x, before)) continue;
         lag->x = after;
         lag->v *= turn.transpose();
     }
 }
 
-void ClothStepper::keep_lag(int parts, const Points& end_velocity, const ClothState& state) {
+/// m_next_lag.v is that of a step of so many parts, which ends at x.
+void ClothStepper::keep_lag(int parts, double dt, const Points& x) {
     m_next_lag.parts = parts;
-    m_next_lag.x = state.x;
-    m_next_lag.v = end_velocity - state.v;
+    m_next_lag.dt = dt;
+    m_next_lag.x = x;
 }
 
 /// Where a step was cut because of its motion alone, contacts of each part's own are all that was
@@ -358,6 +394,7 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     report = corrected;
     std::swap(state, m_corrected);
     m_next_lag.x = state.x;  // that of the parts that were corrected, if there were any
+    if (m_next_lag.parts == 1) m_next_lag.parts = 0;
 }
 
 /// Looks for what a step from m_start went through. Where that are few points they are moved back

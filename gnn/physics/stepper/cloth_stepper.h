@@ -134,6 +134,10 @@ class ClothStepper : public Stepper {
     /// Newton's method takes no notice (false).
     bool set_max_iterations(int most) override;
     bool set_most_residual(double most) override;
+    bool start_next_at(const Points& x) override {
+        m_solver->start_next_at(x);
+        return true;
+    }
     bool set_surface_projection(bool on) override {
         m_solver->set_surface_projection(on);
         return true;
@@ -158,21 +162,25 @@ class ClothStepper : public Stepper {
 
     struct Lag {
         int parts = 0;
-        Points x;  ///< |V| x 3 (m): what was returned last
-        Points v;  ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
+        double dt = 0.0;  ///< of all of them (s)
+        Points x;         ///< |V| x 3 (m): what was returned last
+        Points v;         ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity;
+                          ///< of one part half of how much faster it became
     };
 
     enum class Cut { by_motion, again };         ///< the latter's parts are not corrected
     enum class Neighbours { stay, may_follow };  ///< of points that are taken back
 
     bool is_made_for(double dt) const;
-    void add_lag(int parts, ClothState& state) const;
-    void keep_lag(int parts, const Points& end_velocity, const ClothState& state);
+    bool keeps_lag(int parts) const;
+    void add_lag(int parts, double dt, ClothState& state) const;
+    void keep_lag(int parts, double dt, const Points& x);
     int affordable(int substeps, int least) const;
     int affordable_small_steps(int count) const;
     StepReport guarded_step(const Boundary& boundary, double dt, ClothState& state);
     void report_ignored(const Points& x, StepReport& report);
     StepReport take_whole(const Boundary& boundary, double dt, double motion, ClothState& state);
+    StepReport take_one(const Boundary& boundary, double dt, ClothState& state);
     StepReport take_small_steps(int count, const Boundary& boundary, double dt, ClothState& state);
     StepReport take_parts(int substeps, const Boundary& boundary, double dt, Cut cut,
                           ClothState& state);

@@ -141,7 +141,8 @@ IterationLimits StepSolver::for_correction(const IterationLimits& limits, double
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
     const int count = small_steps(dt);
-    if (count > 1) {
+    const bool rests = m_settings.small_step_rate > 0.0 && !is_moving(state);
+    if (count > 1 || rests) {
         const IterationLimits one = IterationLimits::controlled();
         limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
                                              std::max(one.iterations, count * limits.iterations));
@@ -264,6 +265,7 @@ bool StepSolver::run(const Boundary& boundary, double dt, StepStart* start, Star
     m_last = state;
     m_last_dt = dt / parts;
     m_parts = parts;
+    if (parts > 1) m_next_start.resize(0, 3);
     const std::vector<char>& unrepelled = m_self_contact.begin_step(state.x, boundary.overlapped);
     if (parts > 1) return run_small_steps(boundary, dt, start, limits, unrepelled, report);
     begin(boundary, m_contacts, dt, unrepelled);
@@ -346,6 +348,7 @@ bool StepSolver::minimise_part(const Boundary& boundary, const SurfaceContacts& 
     const PotentialValue* at_x = nullptr;
     if (from == Start::guess)
         at_x = choose_start(boundary, contacts, start, limits, m_last_dt, m_last, report);
+    if (from == Start::guess && !start && !at_x) let_fall(boundary, contacts);
     if (from == Start::outside) at_x = start_outside(boundary, contacts, start, limits, report);
     if (start && limits.iterations == 0 && !at_x) return true;  // as it was predicted
     if (!descend(boundary, limits, at_x, m_last, report)) return false;
@@ -447,7 +450,48 @@ const PotentialValue* StepSolver::choose_start(const Boundary& boundary,
           m_guess);
     m_potential.separate_self_contact(m_guess);
     m_x = m_guess;
+    if (m_parts == 1 && m_next_start.rows() == m_guess.rows()) return start_as_told(boundary);
     return start ? ask(*start, boundary, limits, state, report) : nullptr;
+}
+
+/// Cloth that nothing holds starts where forces take it as a whole. Iterations that had to find out
+/// would have that motion in their history together with that of the shape, and repeat a part of
+/// it: momentum from nothing.
+void StepSolver::let_fall(const Boundary& boundary, const SurfaceContacts& contacts) {
+    if (m_settings.minimiser != MinimiserKind::quasi_newton) return;
+    if (!m_garment->pins().empty() || m_garment->has_goals()) return;
+    const VectorX& masses = m_garment->masses();
+    const double mass = masses.sum(), dt2 = m_potential.inertial_dt() * m_potential.inertial_dt();
+    Vec3 moment = (masses.transpose() * (m_potential.inertial_target() - m_x)).transpose();
+    moment += dt2 * mass * boundary.gravity;
+    if (boundary.accelerations.rows() > 0)
+        moment += dt2 * (masses.transpose() * boundary.accelerations).transpose();
+    const Vec3 way = moment / mass;
+    if (is_clear_of(contacts, way.norm())) m_x.rowwise() += way.transpose();
+}
+
+/// Whether the cloth is farther (m) from all obstacles, at t and in m_x, than they act.
+bool StepSolver::is_clear_of(const SurfaceContacts& contacts, double farther) const {
+    if (contacts.obstacle.empty()) return true;
+    const PotentialSettings& settings = m_potential.settings();
+    const double near = std::max(settings.contact_distance, settings.friction_distance) + farther;
+    for (Eigen::Index i = 0; i < m_x.rows(); ++i) {
+        if (!contacts.has(i)) continue;
+        const double height = (m_x.row(i) - contacts.point1.row(i)).dot(contacts.normal1.row(i));
+        if (std::min(contacts.distance[i], height) < near) return false;
+    }
+    return contacts.ridges.empty();
+}
+
+/// At m_next_start, or at m_guess if that is of less energy.
+const PotentialValue* StepSolver::start_as_told(const Boundary& boundary) {
+    m_started.swap(m_next_start);
+    m_next_start.resize(0, 3);
+    place_pins(*m_garment, boundary, m_started);
+    StepReport rejected;  // is no prediction
+    const PotentialValue* at_x = lower_of_guess_and_prediction(false, rejected);
+    m_x = m_started;
+    return at_x;
 }
 
 /// The same for m_x in the place of the extrapolation.

@@ -141,6 +141,8 @@ class StepSolver {
     void set_ways_in(const TunnellingDetector* ways) { m_ways_in = ways; }
     /// See Stepper::set_most_residual(); of quasi-Newton.
     void set_most_residual(double most) { m_most_residual = most; }
+    /// See Stepper::start_next_at(); of the next step in one part. Without rows: as always.
+    void start_next_at(const Points& x) { m_next_start = x; }
     int factorisations() const { return m_quasi_newton.matrix().factorisations(); }  ///< so far
 
     /// A whole step, from the start if there is one for this length. Where settings ask for small
@@ -234,6 +236,9 @@ class StepSolver {
     const PotentialValue* choose_start(const Boundary& boundary, const SurfaceContacts& contacts,
                                        StepStart* start, const IterationLimits& limits, double dt,
                                        const ClothState& state, StepReport& report);
+    void let_fall(const Boundary& boundary, const SurfaceContacts& contacts);
+    bool is_clear_of(const SurfaceContacts& contacts, double farther) const;
+    const PotentialValue* start_as_told(const Boundary& boundary);
     const PotentialValue* start_outside(const Boundary& boundary, const SurfaceContacts& contacts,
                                         StepStart* start, const IterationLimits& limits,
                                         StepReport& report);
@@ -273,6 +278,7 @@ class StepSolver {
     PotentialValue m_at_guess, m_at_prediction;
     Points m_guess, m_started;  ///< |V| x 3 (m)
     Points m_stop, m_between;   ///< |V| x 3 (m)
+    Points m_next_start;        ///< |V| x 3 (m), or without rows, see start_next_at()
     double m_energy = 0.0;      ///< of m_x after the last minimisation (J)
     Points m_acceleration;      ///< |V| x 3 (m/s^2): what the start adds to guesses
     Points m_x, m_v;            ///< |V| x 3: the new positions and velocities
