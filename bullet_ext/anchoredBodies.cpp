@@ -16,6 +16,7 @@ namespace cloth {
 namespace {
 
 constexpr int kTrials = 8;
+constexpr int kIterations = 600;                   // of the cloth, after which no trial begins
 constexpr double kClose = 5e-4;                    // m: by so little an anchor may be wrong
 constexpr double kResidual = 3e-2;                 // of accurate steps of the cloth
 constexpr double kFarthestWay = 0.3, kTurn = 0.6;  // m, rad: that a body is moved
@@ -260,7 +261,11 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
     m_residual = residual(boundary, from, to);
     if (!first) updateInverse(m_u - m_last_u, m_residual - last);
     const double merit = energy(stepper, boundary, from, to);
-    if (first) m_trusted = std::numeric_limits<double>::infinity();
+    if (first) {
+        m_trusted = std::numeric_limits<double>::infinity();
+        m_iterations = 0;
+    }
+    m_iterations += report.iterations;
     if (first || merit < m_least) {
         m_least = merit;
         m_best_u = m_u;
@@ -271,7 +276,7 @@ bool AnchoredBodies::tryAgain(const Stepper& stepper, const ClothState& from, Bo
     m_last_u = m_u;
     VectorX next = nextTrial(merit);
     limit(next);
-    if (m_trials == kTrials || !next.allFinite() ||
+    if (m_trials == kTrials || m_iterations > kIterations || !next.allFinite() ||
         motion(m_u, m_u - m_follows * m_residual) < kClose) {
         if (m_trials > 1 && m_best_u.isZero(0.0)) m_inverse.resize(0, 0);  // it has led astray
         m_accurate = m_trials > 1;

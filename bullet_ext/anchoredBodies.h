@@ -26,8 +26,9 @@ namespace cloth {
 /// body and the anchored nodes is the identity. It goes on with the inverse Hessian of the last
 /// step, and begins with one that is too stiff rather than too soft. A trial that makes energy is
 /// cut, and steps are trusted no farther than trials have shown. A body so heavy that the cloth
-/// hardly moves it takes one trial; others take up to eight of more accurate steps of the cloth.
-/// What is left after that, TwoWayCoupling hands to body and cloth.
+/// hardly moves it takes one trial; others take up to eight of more accurate steps of the cloth,
+/// each of which starts where the best one ended; none begins after 600 iterations. What is left
+/// after that, TwoWayCoupling hands to body and cloth.
 class AnchoredBodies {
  public:
     /// Bodies that hard anchors of the cloth hold, as Bullet has moved them.
@@ -40,8 +41,7 @@ class AnchoredBodies {
     /// @param to       end of the step; if there is no other trial, that of the best one
     /// @param report   likewise
     /// @return         whether the step is to be taken again; never with a stepper that does not
-    /// know
-    ///                 the fabric's forces
+    ///                 know the fabric's forces
     bool tryAgain(const Stepper& stepper, const ClothState& from, Boundary& boundary,
                   ClothState& to, StepReport& report);
 
@@ -49,6 +49,10 @@ class AnchoredBodies {
     /// stiff cloth is known only where the step is near its minimum; steps that take one trial need
     /// no more than they do anyway.
     double mostResidual() const;
+
+    /// Where the cloth step of the next trial may start (|V| x 3, m), once there was one.
+    bool knowsStart() const { return m_best.x.rows() > 0; }
+    const Points& nextStart() const { return m_best.x; }
 
     /// Moves the bodies to where the cloth step found them.
     /// @param to  end of the cloth step: anchored nodes are put on their anchors, to the bit
@@ -96,6 +100,7 @@ class AnchoredBodies {
     double m_length = 0.0;      ///< (s)
     double m_mass_ratio = 1.0;  ///< massRatio()
     int m_trials = 0;
+    int m_iterations = 0;  ///< of the trials of this step so far
     bool m_accurate = false;
     double m_trusted = 0.0;     ///< length of a step of u (sqrt J)
     Points m_internal;          ///< |V| x 3 (N)

@@ -433,6 +433,7 @@ void SoftBodyStep::solve() {
         if (m_deadline.is_set()) m_stepper->set_max_ms(std::max(1e-3, m_deadline.left()));
         m_stepper->set_most_residual(m_hang ? m_anchored.mostResidual()
                                             : std::numeric_limits<double>::infinity());
+        if (m_hang && m_anchored.knowsStart()) m_stepper->start_next_at(m_anchored.nextStart());
         m_report = m_stepper->step(m_boundary, m_cloth_step.length, m_solved);
         m_report.finite = m_report.finite && fitsFloats(m_solved.x) && fitsFloats(m_solved.v);
         times += m_report.times;
