@@ -66,6 +66,11 @@ std::string metrics_file(const std::string& network, const TrainingRowSettings& 
     return std::filesystem::exists(file) ? file : "";
 }
 
+LoadError not_metrics(const std::string& file) {
+    return {file, "", "has no iteration in every row and gap_training_median in any",
+            "take the metrics.csv of a training"};
+}
+
 }  // namespace
 
 ordered_json training_history(const std::string& file) {
@@ -77,20 +82,20 @@ ordered_json training_history(const std::string& file) {
                             {"history", ordered_json::array()}};
     std::vector<double> gaps;
     for (const ordered_json& row : rows) {
-        if (!row.contains("iteration") || !row.contains("gap_training_median"))
-            throw LoadError(file, "", "has no iteration and gap_training_median in every row",
-                            "take the metrics.csv of a training");
+        if (!row.contains("iteration")) throw not_metrics(file);
         history["iterations"] = row.at("iteration").get<int>();
         if (row.contains("gap_tshirt_median")) {
             history["gap_tshirt"] = row.at("gap_tshirt_median");
             history["gap_sheet"] = number_in(row, "gap_sheet_median");
         }
+        if (!row.contains("gap_training_median")) continue;  // none was measured
         gaps.push_back(row.at("gap_training_median"));
         if (gaps.size() < averaged_rows) continue;
         double sum = 0.0;
         for (size_t k = gaps.size() - averaged_rows; k < gaps.size(); ++k) sum += gaps[k];
         history["history"].push_back({history["iterations"], rounded_number(sum / averaged_rows)});
     }
+    if (gaps.empty() && !rows.empty()) throw not_metrics(file);
     return history;
 }
 

@@ -50,6 +50,13 @@ TEST_F(TrainingRows, AHistoryIsTheMeanOverFiveRows) {
     EXPECT_EQ(history.at("history").dump(), "[[50,3.0],[60,5.0]]");
 }
 
+TEST_F(TrainingRows, RowsInWhichNoGapWasMeasuredDoNotCount) {
+    metrics("10,1,,\n20,2,,\n30,3,0.5,0.75\n40,,,\n50,4,,\n60,5,,\n70,,,\n");
+    const Json history = training_history(m_folder + "/fast.csv");
+    EXPECT_EQ(history.at("iterations"), 70);
+    EXPECT_EQ(history.at("history").dump(), "[[60,3.0]]");
+}
+
 TEST_F(TrainingRows, MetricsThatCannotBeUsedAreNamed) {
     EXPECT_TRUE(training_history(m_folder + "/none.csv").is_null());
     metrics("10,,,\n");
