@@ -27,7 +27,9 @@ case "$preset" in
   asan)
     # Long runs through code that short tests run, too: the other presets have them.
     long_runs='Remesh.DoesNotTakeABorderThatSlid|SelfResolver.TearsNoClothThatMayPass'
-    long_runs+='|CouplingEnergy.Landings$|ClothContacts.WhatLiesOnTheUpperSheet'
+    long_runs+='|CouplingEnergy.Landings$|CouplingEnergy.Trampolines|CouplingEnergy.RodsOnStiffCloth'
+    long_runs+='|CouplingEnergy.AnchorsOnStiffCloth|ClothContacts.WhatFallsOnANetMakesNoEnergy'
+    long_runs+='|ClothContacts.WhatLiesOnTheUpperSheet'
     long_runs+='|SkinGoals.TheTanglesOfAFastCape|BulletScale.HangingSheets'
     long_runs+='|SheetOnSheet.SlidesAboveIt|CoarseLevels.AreSoundOnTornSheets'
     long_runs+='|Untangling.WhatCannotBeUndone|FitGarment.SampledPeople|AnchoredBodies.ARodAlong'
