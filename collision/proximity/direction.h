@@ -38,4 +38,21 @@ inline Vec3 carried_direction(const SurfaceContacts& contacts, Eigen::Index i, c
                   contacts.normal1.row(i));
 }
 
+/// Whether a surface turns from one unit normal to another by more than they are rounded.
+inline bool turns(const Vec3& from, const Vec3& to) {
+    constexpr double rounding = 1e-9;  // rad
+    return (to - from).squaredNorm() > rounding * rounding;
+}
+
+/// How far (m) the surface takes point i of `x` (at t) along until t + dt if it sticks there: as
+/// far as its closest point moves, and around that as the face turns. The motion of the closest
+/// point alone falls short on a surface that turns, as the point stands above it.
+inline Vec3 carried_motion(const SurfaceContacts& contacts, Eigen::Index i, const Points& x) {
+    const Vec3 move = contacts.point1.row(i) - contacts.point0.row(i);
+    const Vec3 from = contacts.normal0.row(i), to = contacts.normal1.row(i);
+    if (!turns(from, to) || from.dot(to) < -0.999) return move;  // see turned()
+    const Vec3 offset = x.row(i) - contacts.point0.row(i);
+    return move + (turned(offset, from, to) - offset);
+}
+
 }  // namespace cloth

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "collision/proximity/direction.h"
+
 namespace cloth {
 
 namespace {
@@ -18,7 +20,7 @@ Vec3 mean_normal(const Vec3& normal0, const Vec3& normal1) {
 double normal_force(double mass, const Vec3& gravity, const Vec3& normal, double depth,
                     const FrictionSettings& settings) {
     const double carried = mass * std::max(0.0, -normal.dot(gravity));
-    const double limit = settings.pressure_limit * mass * gravity.norm();
+    const double limit = settings.pressure_limit * mass * limiting_acceleration(gravity);
     const double pressed = 3.0 * settings.contact_weight * std::pow(std::max(0.0, depth), 2);
     return std::max(carried, std::min(pressed, limit));
 }
@@ -63,7 +65,7 @@ void FrictionEnergy::begin_step(const Garment& garment, const ClothState& state,
         const double force =
             mu * std::max(pinch, normal_force(mass, boundary.gravity, normal, depth, settings));
         if (!(force > 0.0)) continue;
-        const Vec3 carried = contacts.point1.row(i) - contacts.point0.row(i);
+        const Vec3 carried = carried_motion(contacts, i, state.x);
         const Vec3 slip = slip_at_start(state.stick, i, normal, force, m_slip);
         m_sliders.push_back({i, normal, state.x.row(i).transpose() + carried - slip, force});
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "collision/proximity/proximity.h"
@@ -8,6 +9,13 @@
 
 namespace cloth {
 
+/// What the limits of normal forces are multiples of (m/s^2): gravity, but no less than the
+/// Earth's. A tight band presses as much on the Moon.
+inline double limiting_acceleration(const Vec3& gravity) {
+    constexpr double standard_gravity = 9.80665;
+    return std::max(gravity.norm(), standard_gravity);
+}
+
 /// What friction needs to know beside the obstacles' own coefficients.
 struct FrictionSettings {
     double scale = 1.0;           ///< multiplies the obstacles' coefficients; 0: no friction
@@ -15,7 +23,8 @@ struct FrictionSettings {
     double slip = 1e-4;           ///< slip (m) below which friction is smoothed
     double contact_distance = 0;  ///< eps of the contact energy (m)
     double contact_weight = 0;    ///< w of the contact energy (N/m^2)
-    double pressure_limit = 10;   ///< largest normal force, in units of the vertex's weight
+    double pressure_limit = 10;   ///< largest normal force, in units of the vertex's mass times
+                                  ///< limiting_acceleration()
     double pinch_pressure = 0;    ///< on vertices that are pinched (Pa), see Boundary::pinched
 };
 
@@ -23,9 +32,9 @@ struct FrictionSettings {
 ///
 ///     E = sum mu N_i (sqrt(s^2 + |u_i|^2) - s),
 ///
-/// where u_i is the tangential part of the vertex's motion since t relative to the surface point
-/// below it (its own motion from t to t + dt) and of the slip that it began the step with, s the
-/// smoothing slip, mu the obstacle's coefficient.
+/// where u_i is the tangential part of the vertex's motion since t relative to the surface below it
+/// (where that would take it from t to t + dt, see carried_motion()) and of the slip that it began
+/// the step with, s the smoothing slip, mu the obstacle's coefficient.
 ///
 /// The slip that a step begins with is what the last one ended with, up to 3 s: cloth that is
 /// pulled by less than 0.95 mu N stays where it is for good, and does not creep. It is shortened
@@ -37,7 +46,8 @@ struct FrictionSettings {
 /// N_i, fixed at t, is the larger of two estimates: the weight that the surface carries, m |g|
 /// max(0, n . up), exact for cloth lying on it; and the contact force 3 w depth^2 at x_t, which
 /// also holds on vertical surfaces. The second is limited, because a vertex half a millimetre too
-/// deep in an unconverged state would otherwise be glued by a thousand times its weight. Of
+/// deep in an unconverged state would otherwise be glued by a thousand times its weight. The limit
+/// stays where there is little gravity or none, for it is not gravity that presses there. Of
 /// vertices that are pinched between two skins it is at least the skins' pressure on their area.
 ///
 /// HOOD's friction has the same form with three defects that are not kept: its radius is compared

@@ -113,7 +113,7 @@ void IncrementalPotential::begin_step(const ClothState& state, const Boundary& b
     m_self_contact.begin_step(state, dt, unrepelled);
     m_layer_friction.begin_step(
         m_self_contact, state.x, m_settings.friction_slip_speed * dt,
-        carrying_pairs * m_settings.friction_limit * boundary.gravity.norm());
+        carrying_pairs * m_settings.friction_limit * limiting_acceleration(boundary.gravity));
     m_goals.begin_step(state, boundary.goals, dt, m_settings.goal_stiffness);
     m_force_scale = norm_of_forces_at(state);
 }

@@ -29,11 +29,12 @@ struct PotentialSettings {
     double ridge_distance = 1e-3;
     double friction_scale = 1.0;      ///< on the obstacles' coefficients, 0 to 10; 0: no friction
     double friction_distance = 6e-3;  ///< friction acts on vertices closer than this (m), 0 to 0.1
-    /// Sliding slower than this (m/s, 1e-5 to 1) feels less than its friction: so fast, at most, is
-    /// the creep of cloth that friction holds.
+    /// Sliding slower than about three times this (m/s, 1e-5 to 1) feels less than its friction.
+    /// Cloth that is pulled by less than 0.95 of its friction does not creep on obstacles; at 0.98
+    /// it creeps about twice as fast as this, and faster still nearer to the limit.
     double friction_slip_speed = 3e-3;
-    /// Largest normal force (in units of the vertex's weight) that the pressure of a contact can
-    /// claim for friction, 0 to 100; 0: only the weight that the surface carries.
+    /// Largest normal force (in units of the vertex's weight, on Earth at least) that the pressure
+    /// of a contact can claim for friction, 0 to 100; 0: only the weight that the surface carries.
     double friction_limit = 10.0;
     /// Of two skins on the cloth between them (Pa, 0 to 1e5), see Boundary::pinched. Without it
     /// sleeves slip off arms that are folded into the chest; too much of it tears at them. The

@@ -16,7 +16,8 @@ namespace cloth {
 /// `force_per_mass` times the mass that the pair stands for: what is too deep in an unconverged
 /// state shall not stick. In steps in which layers slide over several edges N_p is a poor estimate:
 /// at 60 Hz a sheet slides up to 1.7 times as far as Coulomb says, at 240 Hz 1.1 times. Momentum is
-/// kept. Pairs are new in each step, so layers that friction holds creep, by less than s in a step.
+/// kept. Pairs are new in each step, so layers that friction holds creep: by s in a step where they
+/// are pulled by 0.7 of their friction, by 3 s at 0.95.
 class LayerFriction {
  public:
     /// A pair that friction acts on.

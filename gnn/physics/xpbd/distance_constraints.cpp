@@ -10,12 +10,14 @@ using Row = Eigen::Map<Eigen::Vector4d>;
 
 constexpr int run_length = 32;      // constraints: their work space stays in the first-level cache
 constexpr double shortest = 1e-12;  // m; a spring of no length has no direction and does nothing
+constexpr double softest = 1e-12;   // N/m; what pulls less does nothing
 
-/// Springs by colour: each gets the first colour that neither of its vertices has.
+/// Springs that pull, by colour: each gets the first colour that neither of its vertices has.
 std::vector<std::vector<Spring>> coloured(const std::vector<Spring>& springs, size_t vertices) {
     std::vector<std::vector<Spring>> colours;
     std::vector<std::vector<char>> has_colour;  // colours x |V|
     for (const Spring& spring : springs) {
+        if (!(spring.stiffness > softest)) continue;
         const size_t a = static_cast<size_t>(spring.a), b = static_cast<size_t>(spring.b);
         size_t colour = 0;
         while (colour < colours.size() && (has_colour[colour][a] || has_colour[colour][b]))

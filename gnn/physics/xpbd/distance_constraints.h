@@ -27,6 +27,8 @@ using PaddedPoints = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>; 
 /// it takes to start and join threads.
 class DistanceConstraints {
  public:
+    /// @param springs  those without stiffness, as of fabric that does not resist bending, are left
+    ///                 out: their compliance is infinite
     /// @param inverse_masses  |V| (1/kg); 0: the vertex is held
     /// @param relaxation  1 to 2; 1: none over
     DistanceConstraints(const std::vector<Spring>& springs, const VectorX& inverse_masses,

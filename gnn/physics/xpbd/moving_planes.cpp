@@ -31,6 +31,7 @@ void MovingPlanes::add_plane(Eigen::Index i, const Points& x, const SurfaceConta
     plane.normal = direction_at_start(contacts, i, x);
     plane.normal_move =
         turned(plane.normal, contacts.normal0.row(i), contacts.normal1.row(i)) - plane.normal;
+    plane.turns = turns(contacts.normal0.row(i), contacts.normal1.row(i));
     plane.friction = friction;
     plane.deficit = std::max(0.0, m_distance - contacts.distance[i]);
     if (plane.deficit > 0.0) m_too_close.push_back(m_planes.size());
@@ -68,7 +69,8 @@ void MovingPlanes::project(const PaddedPoints& before, PaddedPoints& x) const {
         const Vec3 normal = scale * direction;
         const Vec3 pushed = at + push * normal;
         const Vec3 start = before.row(plane.vertex).head<3>();
-        const Vec3 move = pushed - start - m_length * plane.point_move;
+        Vec3 move = pushed - start - m_length * plane.point_move;
+        if (plane.turns) move -= m_length * required * plane.normal_move;  // stands at that height
         const Vec3 slip = move - normal.dot(move) * normal;
         const double length = slip.norm(), limit = plane.friction * push;
         const double taken = length > limit ? limit / length : 1.0;

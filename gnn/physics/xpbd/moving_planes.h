@@ -31,8 +31,8 @@ class MovingPlanes {
     void recover(PaddedPoints& x) const;
 
     /// Pushes vertices that are too close out along the normal, and lets friction take off their
-    /// tangential motion relative to the surface since `before`, by at most mu times the push
-    /// (Coulomb's law for positions).
+    /// tangential motion since `before`, relative to their places above the surface, which turn
+    /// with it, by at most mu times the push (Coulomb's law for positions).
     void project(const PaddedPoints& before, PaddedPoints& x) const;
 
  private:
@@ -40,6 +40,7 @@ class MovingPlanes {
         Eigen::Index vertex;
         Vec3 point, point_move;    ///< at t, and from t to t + dt (m)
         Vec3 normal, normal_move;  ///< at t, and from t to t + dt
+        bool turns;                ///< whether the normal moves, but for rounding
         double friction;           ///< Coulomb coefficient
         double deficit;            ///< too close by this at t (m), or 0
     };

@@ -23,6 +23,7 @@ VectorX edge_areas(const Garment& garment) {
 }
 
 double youngs_modulus(const Fabric& fabric) {
+    if (!(fabric.longitudinal() > 0.0)) return 0.0;  // cloth without stiffness
     return 4.0 * fabric.mu * (fabric.mu + fabric.lambda) / fabric.longitudinal();
 }
 

@@ -19,7 +19,8 @@ struct Spring {
 ///     k_e = Y (A0 + A1) / |e|^2,   Y = 4 mu (mu + lambda) / (2 mu + lambda)
 ///
 /// with A0, A1 the areas of the edge's faces and Y Young's modulus of the sheet (Van Gelder 1998,
-/// "Approximate simulation of elastic membranes by triangulated spring meshes"). A lattice of
+/// "Approximate simulation of elastic membranes by triangulated spring meshes"); without shear
+/// stiffness mu there is none. A lattice of
 /// equilateral triangles, k = sqrt(3)/2 Y, is isotropic and stretches under its own weight exactly
 /// like the fabric; in any mesh the mean of the stiffness over all directions is that lattice's. An
 /// irregular mesh gives way where its springs are out of balance: it hangs up to 10 % too far.

@@ -43,8 +43,10 @@ struct XpbdSettings {
 /// which substeps go on. A state whose positions are those this stepper returned last goes on with
 /// its velocities (which others may have changed) plus the lag that was left then. For any other
 /// state the lag is estimated by a trial of the same step, which doubles its cost: half of what the
-/// trial accelerates, at most half of a free fall. So free falls are backward Euler's for any
-/// number of substeps and from any state.
+/// trial accelerates, of each vertex at most half of a free fall. So free falls are backward
+/// Euler's for any number of substeps and from any state in which the fabric is at ease. Where it
+/// is not, as in wrinkled cloth, the vertices' own accelerations take a part of that limit: such a
+/// step may gain as little as half of a free fall's velocity.
 class XpbdStepper : public Stepper {
  public:
     /// Keeps a reference to `garment`.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "collision/proximity/brute_force.h"
+#include "collision/proximity/direction.h"
 #include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/core/primitives.h"
@@ -115,6 +116,37 @@ TEST(Proximity, PointsAreCarriedWithARigidMotion) {
         EXPECT_LT((n1 - motion.linear() * n0).norm(), 1e-12);
         EXPECT_LT((contacts.velocity(i, 0.5) - 2 * (p1 - p0)).norm(), 1e-12);
     }
+}
+
+TEST(Proximity, WhatSticksIsCarriedAtItsDistanceFromASurfaceThatTurns) {
+    std::mt19937 random(6);
+    const Pose start = pose_of({0.2, -0.1, 0.1}, 0.4, {3, 1, 2});
+    Obstacle ball = primitive(ObstacleShape::sphere, Vec3::Zero(), 0.5);
+    Obstacle capsule = primitive(ObstacleShape::capsule, {0.0, 0.4, 0.0}, 0.2);
+    Obstacle mesh = mesh_obstacle(icosphere(3));
+    const Points x = random_points(random, 300, 1.2);
+    for (Obstacle obstacle : {ball, capsule, mesh})
+        for (const double angle : {0.0, 0.3}) {
+            const Pose motion = pose_of({0.1, 0.2, -0.3}, angle, {1, 2, 3});
+            obstacle.pose0 = start;
+            obstacle.pose1 = motion * start;
+            if (obstacle.faces) obstacle.x1 = transformed(obstacle.x0, motion);
+            Proximity proximity({0.5, 0});
+            SurfaceContacts contacts;
+            proximity.query(x, boundary_of({obstacle}), contacts);
+            int found = 0;
+            for (Eigen::Index i = 0; i < x.rows(); ++i) {
+                // In front of a mesh's edges the face alone does not tell how the point turns.
+                if (!contacts.has(i) || contacts.barycentric.row(i).minCoeff() == 0.0) continue;
+                ++found;
+                const Vec3 at = x.row(i), carried = carried_motion(contacts, i, x);
+                EXPECT_LT((at + carried - motion * at).norm(), 1e-12);
+                if (angle == 0.0) {
+                    EXPECT_EQ(carried, contacts.velocity(i, 1.0)) << "to the bit";
+                }
+            }
+            EXPECT_GT(found, 20);
+        }
 }
 
 TEST(Proximity, PrimitivesCarryTheirPoints) {

@@ -80,6 +80,19 @@ TEST_F(FrictionTest, ClothThatMovesWithTheSurfaceFeelsNothing) {
     EXPECT_GT(friction.value(state.x), 0.0);
 }
 
+TEST_F(FrictionTest, ClothThatTurnsWithTheSurfaceBelowItFeelsNothing) {
+    // A flat side of a body that turns about an axis 5 mm above it, in the cloth.
+    const double height = 5e-3;
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.1, Vec3::UnitX()).toRotationMatrix();
+    SurfaceContacts contacts =
+        plane_contacts(state.x, Vec3(0, -height, 0), Vec3::UnitY(), Vec3::Zero());
+    contacts.point1 = contacts.point0 * turn.transpose();
+    contacts.normal1 = contacts.normal0 * turn.transpose();
+    friction.begin_step(garment, state, boundary, contacts, settings);
+    ASSERT_EQ(friction.sliders().size(), static_cast<size_t>(state.x.rows()));
+    EXPECT_NEAR(friction.value(state.x * turn.transpose()), 0.0, 1e-12);
+}
+
 TEST_F(FrictionTest, FollowsGravityNotAnAxis) {
     boundary.gravity = Vec3(0, 0, -9.81);
     begin(Vec3::UnitZ());
@@ -119,6 +132,25 @@ TEST_F(FrictionTest, PressureHoldsOnAVerticalWallUpToTheLimit) {
     begin(Vec3::UnitZ(), Vec3::Zero(), 0.0);
     gradient(slid, g);
     EXPECT_NEAR(g.col(1).sum(), 0.4 * settings.pressure_limit * weight(), 1e-4 * weight());
+}
+
+TEST_F(FrictionTest, PressureHoldsAsMuchWithoutGravity) {
+    const double depth = 5e-6, count = static_cast<double>(state.x.rows());
+    const double pressed = 0.4 * count * 3.0 * settings.contact_weight * depth * depth;
+    for (const double gravity : {9.81, 1.62, 0.0}) {
+        boundary.gravity = Vec3(0, -gravity, 0);
+        begin(Vec3::UnitZ(), Vec3::Zero(), settings.contact_distance - depth);
+        Points g;
+        gradient(state.x.rowwise() + Eigen::RowVector3d(0, 0.1, 0), g);
+        EXPECT_NEAR(g.col(1).sum(), pressed, 1e-5 * pressed) << gravity;
+    }
+}
+
+TEST_F(FrictionTest, ThePressuresLimitGrowsWithGravityOnly) {
+    EXPECT_EQ(limiting_acceleration(Vec3(0, -9.81, 0)), 9.81);
+    EXPECT_EQ(limiting_acceleration(Vec3(0, 0, 25.0)), 25.0);
+    EXPECT_EQ(limiting_acceleration(Vec3(0, -1.62, 0)), limiting_acceleration(Vec3::Zero()));
+    EXPECT_NEAR(limiting_acceleration(Vec3::Zero()), 9.81, 0.01);
 }
 
 TEST_F(FrictionTest, TheNextStepHoldsAsTheLastOneDid) {

@@ -103,6 +103,22 @@ TEST_F(SelfContactTest, PotentialMasksPinsAndAddsAllOfIt) {
     EXPECT_EQ(hessian.nonZeros(), pattern) << "one sparsity for all x of a step";
 }
 
+TEST_F(SelfContactTest, LayersRubOnEachOtherWithoutGravityToo) {
+    PotentialSettings settings;
+    settings.self_contact = contact_settings();
+    IncrementalPotential potential(garment, settings);
+    Boundary boundary = no_outside();
+    boundary.pin_targets = Points::Zero(2, 3);
+    const auto friction_under = [&](double gravity) {
+        boundary.gravity = Vec3(0, -gravity, 0);
+        potential.begin_step(state, boundary, {}, dt);
+        return potential.terms(x).friction;
+    };
+    const double on_earth = friction_under(9.81);
+    EXPECT_GT(on_earth, 0.0);
+    EXPECT_NEAR(friction_under(0.0), on_earth, 1e-3 * on_earth);
+}
+
 TEST_F(SelfContactTest, ForcesAddUpToNothing) {
     Points g;
     gradient(x, g);

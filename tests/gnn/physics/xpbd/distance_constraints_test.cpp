@@ -56,6 +56,23 @@ TEST(DistanceConstraints, NoTwoOfAColourShareAVertex) {
     expect_valid_colours({}, 5);
 }
 
+TEST(DistanceConstraints, SpringsWithoutStiffnessAreLeftOut) {
+    std::vector<Spring> springs = {{0, 1, 1.0, 0.0, unlimited}};
+    DistanceConstraints none(springs, inverse_masses(1.0, 1.0));
+    EXPECT_EQ(none.size(), 0u);
+    springs.push_back({0, 1, 1.0, 1e-9, unlimited});
+    springs.push_back({0, 1, 1.0, std::numeric_limits<double>::denorm_min(), unlimited});
+    DistanceConstraints soft(springs, inverse_masses(1.0, 1.0));
+    EXPECT_EQ(soft.size(), 1u);
+    for (DistanceConstraints* constraints : {&none, &soft}) {
+        constraints->set_time_step(1e-6);
+        PaddedPoints x = pair_at(1.5);
+        constraints->relax(x, true);
+        constraints->relax(x, false);
+        EXPECT_TRUE(x.isApprox(pair_at(1.5)));
+    }
+}
+
 TEST(DistanceConstraints, OnePassSolvesOneSpring) {
     // Backward Euler of two masses: the force k C at the end of h moves them by h^2 w k C.
     const double k = 50.0, h = 0.01, wa = 30.0, wb = 70.0;

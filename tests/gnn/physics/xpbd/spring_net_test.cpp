@@ -94,6 +94,16 @@ TEST_P(SpringNet, StretchesLikeTheFabricWhereItsSidesAreFree) {
     EXPECT_NEAR(ratio(sheet(15, 0.5, 0.2)), 1.0, 0.2) << "all diagonals in one direction";
 }
 
+TEST(SpringNet, FabricWithoutStiffnessHasSpringsWithoutStiffness) {
+    Fabric fabric;
+    fabric.mu = 0.0;
+    for (const double lambda : {20.9, 0.0}) {
+        fabric.lambda = lambda;
+        for (const Spring& spring : stretch_springs(Garment("sheet", lattice(4, 5, 0.02), fabric)))
+            EXPECT_EQ(spring.stiffness, 0.0);
+    }
+}
+
 TEST(SpringNet, IsTheMembraneItselfWhereThePoissonRatioIsAThird) {
     Fabric fabric;
     fabric.lambda = fabric.mu;
