@@ -16,7 +16,7 @@ namespace cloth {
 namespace {
 
 constexpr int kTrials = 8;
-constexpr int kIterations = 600;                   // of the cloth, after which no trial begins
+constexpr int kIterations = 1600;                  // of the cloth, after which no trial begins
 constexpr double kClose = 5e-4;                    // m: by so little an anchor may be wrong
 constexpr double kResidual = 3e-2;                 // of accurate steps of the cloth
 constexpr double kFarthestWay = 0.3, kTurn = 0.6;  // m, rad: that a body is moved

@@ -27,7 +27,7 @@ namespace cloth {
 /// step, and begins with one that is too stiff rather than too soft. A trial that makes energy is
 /// cut, and steps are trusted no farther than trials have shown. A body so heavy that the cloth
 /// hardly moves it takes one trial; others take up to eight of more accurate steps of the cloth,
-/// each of which starts where the best one ended; none begins after 600 iterations. What is left
+/// each of which starts where the best one ended; none begins after 1,600 iterations. What is left
 /// after that, TwoWayCoupling hands to body and cloth.
 class AnchoredBodies {
  public:

@@ -92,30 +92,36 @@ TEST(TwoWayCoupling, WhatTheStepperDidNotSolveCostsNoMomentum) {
     }
 }
 
+// Steps of 1/30 s let it dance for long: one start says little.
 TEST(TwoWayCoupling, ABallLiesInAHammock) {
+    constexpr int kStarts = 4;
     for (const Case& c : kCases) {
-        btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
-        World world(&solver);
-        btRigidBody* ball = world.add(new btSphereShape(0.15f), {0, 0.2f, 0}, false, 0.1f);
-        ball->setActivationState(DISABLE_DEACTIVATION);
-        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 11, 1 + 2 + 4 + 8));
-        cloth->setMass(60, cloth->getMass(60));
-        cloth->m_cfg.kDP = static_cast<btScalar>(1.0 - std::pow(0.1, 1.0 / c.rate));
-        // The fabric's own weight, so that its stiffness is what it is for real cloth.
-        for (int i = 0; i < cloth->m_nodes.size(); ++i)
-            if (cloth->m_nodes[i].m_im > 0) cloth->m_nodes[i].m_im = 121.0f / 0.2f;
         double weight = 0.0;
         int counted = 0;
-        for (int i = 0; i < static_cast<int>(5 * c.rate); ++i) {
-            const Vec3 before = momentum(*ball);
-            world.step(1.0 / c.rate);
-            if (i < static_cast<int>(3 * c.rate)) continue;
-            // Gravity acts first and the cloth last.
-            weight += (momentum(*ball).y() - before.y()) * c.rate + 0.1 * 9.81;
-            ++counted;
+        for (int start = 0; start < kStarts; ++start) {
+            btGnnSoftBodySolver solver(quasi_newton(c.fixed_dt), soft_cotton());
+            World world(&solver);
+            const btScalar aside = 1e-4f * static_cast<btScalar>(start);
+            btRigidBody* ball = world.add(new btSphereShape(0.15f), {aside, 0.2f, 0}, false, 0.1f);
+            ball->setActivationState(DISABLE_DEACTIVATION);
+            btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}, 11, 1 + 2 + 4 + 8));
+            cloth->setMass(60, cloth->getMass(60));
+            cloth->m_cfg.kDP = static_cast<btScalar>(1.0 - std::pow(0.1, 1.0 / c.rate));
+            // The fabric's own weight, so that its stiffness is what it is for real cloth.
+            for (int i = 0; i < cloth->m_nodes.size(); ++i)
+                if (cloth->m_nodes[i].m_im > 0) cloth->m_nodes[i].m_im = 121.0f / 0.2f;
+            for (int i = 0; i < static_cast<int>(5 * c.rate); ++i) {
+                const Vec3 before = momentum(*ball);
+                world.step(1.0 / c.rate);
+                if (i < static_cast<int>(3 * c.rate)) continue;
+                // Gravity acts first and the cloth last.
+                weight += (momentum(*ball).y() - before.y()) * c.rate + 0.1 * 9.81;
+                ++counted;
+            }
+            EXPECT_GT(ball->getWorldTransform().getOrigin().y(), -1.0)
+                << c.fixed_dt << " " << c.rate << " " << start;
         }
         EXPECT_NEAR(weight / counted, 0.1 * 9.81, 0.05) << c.fixed_dt << " " << c.rate;
-        EXPECT_GT(ball->getWorldTransform().getOrigin().y(), -1.0) << c.fixed_dt << " " << c.rate;
     }
 }
 

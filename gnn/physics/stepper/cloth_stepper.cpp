@@ -152,8 +152,18 @@ StepReport ClothStepper::step(const Boundary& boundary, double dt, ClothState& s
     m_deadline = std::isinf(m_max_ms) ? Deadline() : Deadline::in(kOfLimit * m_max_ms);
     m_trees->begin_step();
     if (!m_guard.limbs) return guarded_step(boundary, dt, state);
-    StepReport report = guarded_step(m_limbs.filter(boundary, dt, state), dt, state);
-    if (report.finite) report_ignored(state.x, report);
+    Stopwatch watch;
+    const Boundary& outside = m_limbs.filter(boundary, dt, state);
+    double limbs_ms = watch.lap();
+    m_deadline = m_deadline.earlier(m_ignored_ms);
+    StepReport report = guarded_step(outside, dt, state);
+    watch.lap();
+    if (report.finite) {
+        report_ignored(state.x, report);
+        m_ignored_ms = watch.lap();
+        limbs_ms += m_ignored_ms;
+    }
+    report.times.proximity += limbs_ms;
     return report;
 }
 
@@ -191,7 +201,7 @@ StepReport ClothStepper::guarded_step(const Boundary& boundary, double dt, Cloth
         }
     }  // better the first step than none
     report.out_of_time = report.out_of_time || shortened;
-    if (report.finite && lag.parts > 0) {
+    if (report.finite && lag.parts > 1) {
         if (goes_on) std::swap(m_lag_before, m_lag);
         std::swap(m_lag, lag);
     }
@@ -229,23 +239,13 @@ StepReport ClothStepper::take_whole(const Boundary& boundary, double dt, double 
 }
 
 StepReport ClothStepper::take_one(const Boundary& boundary, double dt, ClothState& state) {
-    const bool lags = keeps_lag(1);
-    if (lags) {
-        m_state.v = state.v;
-        add_lag(1, dt, state);
-        m_next_lag.v = state.v;
-        if (is_watched()) m_start.v = state.v;
-    }
+    m_state.v = state.v;
+    add_lag(1, dt, state);
+    if (is_watched()) m_start.v = state.v;
     const StepReport report = is_made_for(dt)
                                   ? m_solver->whole(boundary, dt, state)
                                   : m_solver->part(boundary, dt, m_guard.iterations, state);
-    if (!lags) return report;
-    if (report.finite) {
-        m_next_lag.v = 0.5 * (state.v - m_next_lag.v);
-        keep_lag(1, dt, state.x);
-    } else {
-        state.v = m_state.v;
-    }
+    if (!report.finite) state.v = m_state.v;
     return report;
 }
 
@@ -306,33 +306,27 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     return report;
 }
 
-/// Whether a step of so many parts may follow one of another number. Whole steps that were cut for
-/// their motion alone go on without: what is lost damps what moves so fast.
-bool ClothStepper::keeps_lag(int parts) const {
-    const bool changes = m_solver->settings().small_step_rate > 0.0 && m_substeps == 1;
-    return changes || parts > 1;
-}
-
-/// Mean velocities of steps dt and dt' long differ by a (dt + dt') / 2 under a constant
-/// acceleration a. The mean of N' parts is faster than where they start by a dt' (N' + 1) / 2N', so
-/// they start a (dt - dt' / N') / 2 faster than the mean before; the last of the N parts of that
-/// ended faster than it by a dt (N - 1) / 2N. Where steps are equal, each starts where the last one
-/// ended.
+/// A step goes on from the velocity at the end of the last part. Of a constant acceleration a, that
+/// of N parts is faster than their mean by (N - 1) / 2N a dt. Steps of one length and other numbers
+/// of parts go on from where their means do. Whole steps that were cut for their motion alone go on
+/// without where the number changes: what is lost damps what moves so fast.
 void ClothStepper::add_lag(int parts, double dt, ClothState& state) const {
+    const auto share = [](int count) { return static_cast<double>(count - 1) / count; };
     for (const Lag* lag : {&m_lag, &m_lag_before}) {
-        if (lag->parts < 1 || !same_points(lag->x, state.x)) continue;
-        const bool as_before = parts == lag->parts && dt == lag->dt;
-        if (as_before && parts > 1) state.v += lag->v;
-        if (as_before || (parts != lag->parts && !keeps_lag(1))) return;
-        const double share = lag->parts > 1 ? 1.0 - 1.0 / lag->parts : 1.0;
-        state.v += (lag->dt - dt / parts) / (lag->dt * share) * lag->v;
+        if (lag->parts < 2 || !same_points(lag->x, state.x)) continue;
+        const bool may_differ = m_solver->settings().small_step_rate > 0.0 && m_substeps == 1;
+        if (lag->parts != parts && !may_differ) return;
+        if (lag->parts != parts && parts > 1 && lag->dt == dt)
+            state.v += share(parts) / share(lag->parts) * lag->v;
+        else
+            state.v += lag->v;
         return;
     }
 }
 
 void ClothStepper::moved(const Points& before, const Points& after, const Eigen::Matrix3d& turn) {
     for (Lag* lag : {&m_lag, &m_lag_before}) {
-        if (lag->parts < 1 || !same_points(lag->x, before)) continue;
+        if (lag->parts < 2 || !same_points(lag->x, before)) continue;
         lag->x = after;
         lag->v *= turn.transpose();
     }
@@ -394,7 +388,6 @@ void ClothStepper::correct(const Boundary& boundary, double dt, const IterationL
     report = corrected;
     std::swap(state, m_corrected);
     m_next_lag.x = state.x;  // that of the parts that were corrected, if there were any
-    if (m_next_lag.parts == 1) m_next_lag.parts = 0;
 }
 
 /// Looks for what a step from m_start went through. Where that are few points they are moved back

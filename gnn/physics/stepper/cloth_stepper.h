@@ -164,15 +164,13 @@ class ClothStepper : public Stepper {
         int parts = 0;
         double dt = 0.0;  ///< of all of them (s)
         Points x;         ///< |V| x 3 (m): what was returned last
-        Points v;         ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity;
-                          ///< of one part half of how much faster it became
+        Points v;         ///< |V| x 3 (m/s): velocity at the end of the last part - mean velocity
     };
 
     enum class Cut { by_motion, again };         ///< the latter's parts are not corrected
     enum class Neighbours { stay, may_follow };  ///< of points that are taken back
 
     bool is_made_for(double dt) const;
-    bool keeps_lag(int parts) const;
     void add_lag(int parts, double dt, ClothState& state) const;
     void keep_lag(int parts, double dt, const Points& x);
     int affordable(int substeps, int least) const;
@@ -222,6 +220,7 @@ class ClothStepper : public Stepper {
     double m_part_ms = 0.0;       ///< what a part takes at least, as the last ones did
     double m_iteration_ms = 0.0;  ///< of the last whole step, without its searches
     double m_search_ms = 0.0;     ///< what the last search took
+    double m_ignored_ms = 0.0;    ///< what report_ignored() took, after the last step
 };
 
 }  // namespace cloth

@@ -141,7 +141,8 @@ IterationLimits StepSolver::for_correction(const IterationLimits& limits, double
 StepReport StepSolver::whole(const Boundary& boundary, double dt, ClothState& state) {
     IterationLimits limits = m_settings.quasi_newton;
     const int count = small_steps(dt);
-    const bool rests = m_settings.small_step_rate > 0.0 && !is_moving(state);
+    const bool by_history = m_settings.quasi_newton.hessian_cg_iterations == 0;
+    const bool rests = m_settings.small_step_rate > 0.0 && by_history && !is_moving(state);
     if (count > 1 || rests) {
         const IterationLimits one = IterationLimits::controlled();
         limits = IterationLimits::controlled(std::max(one.least(), count * limits.iterations),
