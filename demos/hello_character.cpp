@@ -21,6 +21,7 @@
 #include "data/body/skin_binding.h"
 #include "data/body/welded_character.h"
 #include "data/core/check_range.h"
+#include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/core/surface_distance.h"
 #include "data/core/weld.h"
@@ -30,6 +31,8 @@
 #include "gnn/model/make_cloth.h"
 
 namespace {
+
+constexpr double longest = 3600.0;  // s
 
 struct Options {
     std::string character, garment, garment_mesh, fabric = "soft", solver = "small", out;
@@ -47,6 +50,10 @@ struct Outcome {
 
 cloth::WeldedCharacter load_skin(const Options& options) {
     cloth::WeldedCharacter skin(options.character, options.skin, options.weld);
+    if (options.seconds == 0.0 && !(skin.duration() <= longest))
+        throw cloth::LoadError(options.character, "",
+                               "its animation is longer than an hour, by the time of its last key",
+                               "give --seconds, or mend the times when exporting");
     cloth::check_height(options.character, skin);
     cloth::check_surface(options.character, skin);
     std::printf("character  %s: %d vertices, %.2f m high, ", options.character.c_str(),
@@ -209,7 +216,7 @@ int read_options(int argc, char** argv, Options& options) {
     cloth::check_range("--clearance", options.clearance, 1e-3, 0.05);
     cloth::check_range("--garment-scale", options.garment_scale, 1e-6, 1e6);
     cloth::check_range("--settle", options.settle, 0.0, 60.0);
-    cloth::check_range("--seconds", options.seconds, 0.0, 3600.0);
+    cloth::check_range("--seconds", options.seconds, 0.0, longest);
     if (options.character.empty() != options.garment.empty())
         throw cloth::ArgumentError("options", "only one of --character and --garment is given",
                                    "give both: the garment has to be modelled on the character");

@@ -14,13 +14,27 @@
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
 #include "data/body/animated_body.h"
+#include "data/core/errors.h"
 #include "data/core/paths.h"
 #include "data/files/mesh_io.h"
 #include "gnn/model/make_cloth.h"
 
+namespace {
+
+int frames_named(const char* text) {
+    char* end = nullptr;
+    const long frames = std::strtol(text, &end, 10);
+    if (end == text || *end != '\0' || frames < 1 || frames > 100000)
+        throw cloth::ArgumentError(std::string("FRAMES ") + text, "is no number of frames",
+                                   "give a whole number from 1 to 100000");
+    return static_cast<int>(frames);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) try {
     const std::string motion = argc > 1 ? argv[1] : "01_01";
-    const int frames = argc > 2 ? std::atoi(argv[2]) : 60;
+    const int frames = argc > 2 ? frames_named(argv[2]) : 60;
     const cloth::AnimatedBody person(
         std::make_shared<const cloth::Body>(cloth::Body::load_default()),
         cloth::load_motion_by_name(motion));

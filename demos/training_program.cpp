@@ -11,6 +11,7 @@
 
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
+#include "data/files/make_folder.h"
 
 namespace cloth {
 
@@ -45,7 +46,10 @@ static void check_folder(const std::string& out, bool resume) {
 }
 
 void begin_training(const TrainingProgram& program) {
-    if (program.writes) check_folder(program.out, program.resume);
+    if (program.writes) {
+        make_folder(program.out);
+        check_folder(program.out, program.resume);
+    }
     check_range("--nice", program.nice, 0, 19);
     if (program.nice > 0 && setpriority(PRIO_PROCESS, 0, program.nice) != 0)
         std::cerr << program.name << ": the priority stays as it is: " << std::strerror(errno)

@@ -17,7 +17,8 @@ struct TrainingProgram {
 
 /// Lowers the priority.
 /// @throws ArgumentError if the folder has files of a training that would be overwritten: one of
-///         days must not be lost because an option was forgotten; or if `nice` is out of range
+///         days must not be lost because an option was forgotten; or if `nice` is out of range;
+///         LoadError if the folder cannot be made
 void begin_training(const TrainingProgram& program);
 
 /// True after Ctrl-C or SIGTERM, from the first call on; the second signal ends the program at

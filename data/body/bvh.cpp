@@ -22,6 +22,8 @@ namespace cloth {
 namespace {
 
 constexpr double degree = M_PI / 180.0;
+constexpr double farthest = 1e6;        // m
+constexpr double longest_offset = 1e9;  // in the file's units, which are a millimetre at least
 
 enum class Channel { x_position, y_position, z_position, x_rotation, y_rotation, z_rotation };
 
@@ -87,7 +89,10 @@ struct Hierarchy {
 Vec3 parse_offset(const LineReader& reader, const std::vector<std::string>& words) {
     if (words.size() != 4)
         reader.fail("OFFSET needs three numbers", "write 'OFFSET x y z' in the parent's frame");
-    return {reader.number(words[1]), reader.number(words[2]), reader.number(words[3])};
+    const Vec3 offset(reader.number(words[1]), reader.number(words[2]), reader.number(words[3]));
+    if (offset.cwiseAbs().maxCoeff() > longest_offset)
+        reader.fail("the OFFSET is out of range", "use numbers of at most 1e9");
+    return offset;
 }
 
 Channel parse_channel(const LineReader& reader, const std::string& word) {
@@ -172,8 +177,10 @@ int parse_frame_count(LineReader& reader) {
     if (words.size() != 2 || words[0] != "Frames:")
         reader.fail("'Frames: n' is missing", "write it after MOTION");
     const double count = reader.number(words[1]);
+    if (count == 0.0) reader.fail("the motion has no frames", "use a file with at least one frame");
     if (count < 1 || count > 1e7 || count != std::floor(count))
-        reader.fail("the motion has no frames", "use a file with at least one frame");
+        reader.fail("the number of frames, '" + words[1] + "', is out of range",
+                    "write how many rows follow, a whole number from 1 to 10,000,000");
     return static_cast<int>(count);
 }
 
@@ -226,6 +233,9 @@ MotionFrame parse_frame(const LineReader& reader, const Hierarchy& tree,
                           frame.rotations[joint.joint]);
     }
     frame.root_position *= scale;
+    if (frame.root_position.cwiseAbs().maxCoeff() > farthest)
+        reader.fail("the root is more than 1,000 km from the origin",
+                    "export the motion again, or remove the row");
     for (Eigen::Quaterniond& rotation : frame.rotations) rotation.normalize();
     return frame;
 }

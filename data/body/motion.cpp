@@ -6,6 +6,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/paths.h"
+#include "data/files/vertex_order.h"
 
 namespace cloth {
 
@@ -45,9 +46,22 @@ std::vector<std::string> shared_motions() {
     return paths;
 }
 
-bool has_name(const std::string& path, const std::string& name) {
-    const std::string stem = fs::path(path).stem().string();
-    return stem == name || stem.rfind(name + "_", 0) == 0;
+bool is_bvh(const std::string& path) {
+    return extension_of(path) == "bvh";
+}
+
+/// The file NAME.bvh, or the one NAME_*.bvh there is; empty: none.
+std::string file_named(const std::vector<std::string>& shared, const std::string& name) {
+    std::vector<std::string> fits;
+    for (const std::string& path : shared) {
+        const std::string stem = fs::path(path).stem().string();
+        if (stem == name) return path;
+        if (stem.rfind(name + "_", 0) == 0) fits.push_back(path);
+    }
+    if (fits.size() < 2) return fits.empty() ? "" : fits.front();
+    std::string names;
+    for (const std::string& path : fits) names += " " + fs::path(path).stem().string();
+    throw LoadError(name, "", "several motions are called so", "give one of:" + names);
 }
 
 std::string known_names(const std::vector<std::string>& shared) {
@@ -113,13 +127,15 @@ Points joint_positions(const Skeleton& skeleton, const MotionFrame& frame) {
 }
 
 Motion load_motion_by_name(const std::string& name) {
-    if (fs::path(name).extension() == ".bvh" && fs::exists(name))
-        return resample(load_bvh(name), default_fps);
+    std::error_code none;
+    const bool is_there = fs::exists(name, none);
+    if (is_there && is_bvh(name)) return resample(load_bvh(name), default_fps);
     for (const ModelClip& clip : model_clips)
         if (name == clip.name) return load_model_clip(clip);
     const std::vector<std::string> shared = shared_motions();
-    for (const std::string& path : shared)
-        if (has_name(path, name)) return resample(load_bvh(path), default_fps);
+    const std::string found = file_named(shared, name);
+    if (!found.empty()) return resample(load_bvh(found), default_fps);
+    if (is_there) return resample(load_bvh(name), default_fps);
     throw LoadError(name, "", "no motion of that name",
                     "give the path of a BVH file or one of:" + known_names(shared));
 }
@@ -129,7 +145,7 @@ std::vector<std::string> list_motions(const std::string& folder) {
         throw LoadError(folder, "", "is not a folder", "name a folder of BVH files");
     std::vector<std::string> paths;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".bvh") paths.push_back(entry.path().string());
+        if (is_bvh(entry.path().string())) paths.push_back(entry.path().string());
     std::sort(paths.begin(), paths.end());
     return paths;
 }

@@ -65,11 +65,13 @@ std::vector<Eigen::Quaterniond> world_rotations(const Skeleton& skeleton, const 
 Points joint_positions(const Skeleton& skeleton, const MotionFrame& frame);
 
 /// A motion by its CMU number ("01_01"), file name or path, at 30 Hz. Looked for in this order:
-///  1. an existing path to a BVH file;
+///  1. an existing path that ends with .bvh, in capitals or not;
 ///  2. the clips of assimp-testmodels: 01_01 (the part of the capture with steady motion: frames 38
 ///     to 261 at 30 Hz), 01_03 and Boxing_Toes;
-///  3. the shared data folder, motions/train and motions/validation: NAME.bvh or NAME_*.bvh.
-/// @throws LoadError listing the known names
+///  3. the shared data folder, motions/train and motions/validation: NAME.bvh, or NAME_*.bvh if
+///     there is one;
+///  4. any other existing path, whose file is read as BVH.
+/// @throws LoadError listing the known names, or those that begin with NAME_ if there are several
 Motion load_motion_by_name(const std::string& name);
 
 /// Paths of the BVH files of a folder, sorted by name.

@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int type_float = 5126, bytes8 = 5121, bytes16 = 5123;  // component types of glTF
+constexpr int type_float = 5126, bytes8 = 5121, bytes16 = 5123, bytes32 = 5125;  // of glTF
 
 std::uint32_t word_at(const std::string& bytes, size_t at) {
     std::uint32_t word = 0;
@@ -135,30 +135,40 @@ const std::string& GltfNumbers::buffer(size_t number, const std::string& place) 
     return m_buffers[number] = read_file((folder / without_percents(uri)).string());
 }
 
-std::vector<float> GltfNumbers::read(size_t accessor, int components, const std::string& place) {
+size_t GltfNumbers::count(size_t accessor, const std::string& place) const {
+    return index(entry("accessors", accessor, place), "count", place);
+}
+
+bool GltfNumbers::is_plain(size_t accessor, const std::string& place) const {
+    const json& entry = this->entry("accessors", accessor, place);
+    if (!entry.is_object() || entry.contains("sparse") || !entry.contains("bufferView"))
+        return false;
+    const json& view = this->entry("bufferViews", index(entry, "bufferView", place), place);
+    return view.is_object() && !view.contains("extensions");
+}
+
+const json& GltfNumbers::typed_entry(size_t accessor, int components,
+                                     const std::string& place) const {
     const json& entry = this->entry("accessors", accessor, place);
     const std::string type = components == 1 ? "SCALAR" : "VEC" + std::to_string(components);
     const auto found = entry.is_object() ? entry.find("type") : entry.end();
     if (!entry.is_object() || found == entry.end() || *found != type)
         fail(place, "it is not of the type " + type, "store one " + type + " per vertex");
-    const size_t component = index(entry, "componentType", place);
-    const bool is_normalised =
-        entry.contains("normalized") && entry["normalized"].is_boolean() && entry["normalized"];
-    if (component != type_float &&
-        !(is_normalised && (component == bytes8 || component == bytes16)))
-        fail(place, "its numbers are neither floats nor normalised bytes or 16-bit numbers",
-             "store it as 32-bit floats");
     if (entry.contains("sparse") || !entry.contains("bufferView"))
         fail(place, "it is stored sparsely, or not at all", "store one number per vertex");
-    const size_t count = index(entry, "count", place);
-    const json& view = this->entry("bufferViews", index(entry, "bufferView", place), place);
-    const std::string& bytes = buffer(index(view, "buffer", place), place);
+    return entry;
+}
 
-    const size_t size = component == type_float ? 4 : component == bytes16 ? 2 : 1;
+GltfNumbers::Elements GltfNumbers::elements(const json& accessor, size_t size, int components,
+                                            const std::string& place) {
+    const size_t count = index(accessor, "count", place);
+    const json& view = this->entry("bufferViews", index(accessor, "bufferView", place), place);
+    const std::string& bytes = buffer(index(view, "buffer", place), place);
     const size_t packed = size * static_cast<size_t>(components);
     const size_t stride = view.contains("byteStride") ? index(view, "byteStride", place) : packed;
     const size_t view_begin = view.contains("byteOffset") ? index(view, "byteOffset", place) : 0;
-    const size_t offset = entry.contains("byteOffset") ? index(entry, "byteOffset", place) : 0;
+    const size_t offset =
+        accessor.contains("byteOffset") ? index(accessor, "byteOffset", place) : 0;
     const size_t all = bytes.size();
     const bool fits =
         view_begin <= all && offset <= all - view_begin && count <= all && stride <= all &&
@@ -168,11 +178,25 @@ std::vector<float> GltfNumbers::read(size_t accessor, int components, const std:
     if (!fits)
         fail(place, "its numbers are beyond the end of the file",
              "the file is truncated or damaged: export it again");
+    return {bytes.data() + view_begin + offset, count, stride};
+}
+
+std::vector<float> GltfNumbers::read(size_t accessor, int components, const std::string& place) {
+    const json& entry = typed_entry(accessor, components, place);
+    const size_t component = index(entry, "componentType", place);
+    const bool is_normalised =
+        entry.contains("normalized") && entry["normalized"].is_boolean() && entry["normalized"];
+    if (component != type_float &&
+        !(is_normalised && (component == bytes8 || component == bytes16)))
+        fail(place, "its numbers are neither floats nor normalised bytes or 16-bit numbers",
+             "store it as 32-bit floats");
+    const size_t size = component == type_float ? 4 : component == bytes16 ? 2 : 1;
+    const Elements stored = elements(entry, size, components, place);
     std::vector<float> numbers;
-    numbers.reserve(count * static_cast<size_t>(components));
-    for (size_t i = 0; i < count; ++i)
+    numbers.reserve(stored.count * static_cast<size_t>(components));
+    for (size_t i = 0; i < stored.count; ++i)
         for (size_t c = 0; c < static_cast<size_t>(components); ++c) {
-            const char* const at = bytes.data() + view_begin + offset + i * stride + c * size;
+            const char* const at = stored.first + i * stored.stride + c * size;
             std::uint8_t byte = 0;
             std::uint16_t word = 0;
             float number = 0.0f;
@@ -182,6 +206,25 @@ std::vector<float> GltfNumbers::read(size_t accessor, int components, const std:
                 std::memcpy(&word, at, sizeof word), number = static_cast<float>(word) / 65535.0f;
             else
                 std::memcpy(&byte, at, sizeof byte), number = static_cast<float>(byte) / 255.0f;
+            numbers.push_back(number);
+        }
+    return numbers;
+}
+
+std::vector<std::uint32_t> GltfNumbers::read_whole(size_t accessor, int components,
+                                                   const std::string& place) {
+    const json& entry = typed_entry(accessor, components, place);
+    const size_t component = index(entry, "componentType", place);
+    if (component != bytes8 && component != bytes16 && component != bytes32)
+        fail(place, "its numbers are no whole numbers without a sign", "export the file again");
+    const size_t size = component == bytes32 ? 4 : component == bytes16 ? 2 : 1;
+    const Elements stored = elements(entry, size, components, place);
+    std::vector<std::uint32_t> numbers;
+    numbers.reserve(stored.count * static_cast<size_t>(components));
+    for (size_t i = 0; i < stored.count; ++i)
+        for (size_t c = 0; c < static_cast<size_t>(components); ++c) {
+            std::uint32_t number = 0;  // glTF is little-endian, as is this machine
+            std::memcpy(&number, stored.first + i * stored.stride + c * size, size);
             numbers.push_back(number);
         }
     return numbers;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -27,6 +28,19 @@ class GltfNumbers {
     ///         that are not normalised, or its bytes are not there
     std::vector<float> read(size_t accessor, int components, const std::string& place);
 
+    /// The whole numbers of an accessor, such as corners of faces, of 8 to 32 bits without a sign.
+    /// @throws LoadError as read() does
+    std::vector<std::uint32_t> read_whole(size_t accessor, int components,
+                                          const std::string& place);
+
+    /// How many elements an accessor has. @throws LoadError if there is no such accessor
+    size_t count(size_t accessor, const std::string& place) const;
+
+    /// Whether read() can read it as it is stored: neither sparsely, nor compressed, nor not at
+    /// all.
+    /// @throws LoadError if there is no such accessor
+    bool is_plain(size_t accessor, const std::string& place) const;
+
     /// A number of the file that counts something or refers to something.
     /// @throws LoadError if it is not there, or is no whole number of 0 or more
     size_t index(const nlohmann::json& object, const char* key, const std::string& place) const;
@@ -35,6 +49,16 @@ class GltfNumbers {
     [[noreturn]] void fail(const std::string& place, const std::string& problem,
                            const std::string& remedy) const;
     const nlohmann::json& entry(const char* list, size_t number, const std::string& place) const;
+    /// Where the bytes of an accessor are.
+    struct Elements {
+        const char* first;
+        size_t count, stride;
+    };
+    /// @param size  of a component (bytes)
+    Elements elements(const nlohmann::json& accessor, size_t size, int components,
+                      const std::string& place);
+    const nlohmann::json& typed_entry(size_t accessor, int components,
+                                      const std::string& place) const;
     const std::string& buffer(size_t number, const std::string& place);
 
     std::string m_path;

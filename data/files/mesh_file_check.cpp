@@ -12,6 +12,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
+#include "data/files/gltf_check.h"
 #include "data/files/ply_length.h"
 #include "data/files/vertex_order.h"
 
@@ -127,7 +128,10 @@ void check_gltf(const std::string& path, const std::string& bytes) {
     const std::string text = gltf_json(path, bytes);
     check_json_depth(path, text);
     try {
-        check_gltf_values(path, json::parse(text));
+        const json root = json::parse(text);
+        check_gltf_values(path, root);
+        // Lists of glTF 1.0 are objects.
+        if (root.contains("accessors") && root["accessors"].is_array()) check_gltf_parts(path);
     } catch (const json::exception& error) {
         fail(path, "", error.what());
     }

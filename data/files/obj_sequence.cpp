@@ -1,10 +1,13 @@
 #include "data/files/obj_sequence.h"
 
+#include <fcntl.h>
+
 #include <cstdio>
 #include <filesystem>
 
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
+#include "data/files/make_folder.h"
 #include "data/files/mesh_io.h"
 
 namespace cloth {
@@ -17,10 +20,8 @@ ObjSequence::ObjSequence(const std::string& path, const TriMesh& mesh,
     fs::path folder = fs::path(path).lexically_normal();
     if (!folder.has_filename()) folder = folder.parent_path();
     m_prefix = (folder / folder.filename()).string() + "_";
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error || !fs::is_directory(folder))
-        throw LoadError(path, "", "cannot be made", "give a folder, or one that can be made");
+    make_folder(folder.string());
+    m_lock.emplace(folder.string(), O_RDONLY | O_DIRECTORY);
     if (start == CacheStart::anew && fs::exists(file(0)))
         throw LoadError(file(0), "", "is there already",
                         "remove the files of the earlier sequence, give another folder, or go on "

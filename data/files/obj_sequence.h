@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "data/files/cache_writer.h"
+#include "data/files/write_lock.h"
 
 namespace cloth {
 
@@ -11,7 +13,7 @@ namespace cloth {
 class ObjSequence : public CacheWriter {
  public:
     /// @throws LoadError if the folder cannot be made or, unless it goes on, has a sequence of this
-    ///         name: files of a longer one would be left at its end
+    ///         name: files of a longer one would be left at its end; or if another run writes to it
     ObjSequence(const std::string& path, const TriMesh& mesh, const CacheSettings& settings,
                 CacheStart start);
 
@@ -23,6 +25,7 @@ class ObjSequence : public CacheWriter {
     void commit() override {}
 
     std::string m_prefix;
+    std::optional<WriteLock> m_lock;  ///< of the folder
     TriMesh m_mesh;
 };
 

@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <string>
+
+#include "data/files/write_lock.h"
 
 namespace cloth {
 
@@ -12,7 +15,8 @@ enum class CacheStart { anew, go_on };
 /// A file that is written piece by piece under a temporary name and renamed when it is whole. What
 /// is there can be read at any time, and it stays when the writing is interrupted. Going on, one
 /// writes everything again from the first byte: what is there is compared, what is missing is
-/// appended. So it ends as if nothing had happened, or with an error.
+/// appended. So it ends as if nothing had happened, or with an error. One run at a time writes to
+/// it.
 ///
 ///     ResumedFile file("shirt.part.pc2", CacheStart::go_on);
 ///     file.write(header, "header");
@@ -22,9 +26,8 @@ class ResumedFile {
  public:
     /// @param ending  what stands at the end of the file after every write(), such as a closing
     ///                bracket; the next one replaces it
-    /// @throws LoadError if the file cannot be opened for writing
+    /// @throws LoadError if the file cannot be opened for writing, or another run writes to it
     ResumedFile(std::string path, CacheStart start, std::string ending = {});
-    ~ResumedFile();
     ResumedFile(const ResumedFile&) = delete;
     ResumedFile& operator=(const ResumedFile&) = delete;
 
@@ -43,7 +46,8 @@ class ResumedFile {
     [[noreturn]] void fail() const;
 
     std::string m_path, m_ending;
-    std::FILE* m_file;
+    WriteLock m_lock;
+    std::unique_ptr<std::FILE, int (*)(std::FILE*)> m_file;
     std::uintmax_t m_there = 0;  ///< bytes that an earlier run left, without the ending
     std::uintmax_t m_at = 0;     ///< where the next piece begins
 };

@@ -2,8 +2,8 @@
 // --help.
 
 #include <cstdio>
-#include <filesystem>
 
+#include "data/files/make_folder.h"
 #include "demos/bullet_scenes/options.h"
 #include "demos/bullet_scenes/report.h"
 #include "demos/bullet_scenes/scene_film.h"
@@ -94,7 +94,7 @@ void run(const BulletScenesOptions& options) {
     }
     const SceneSolvers solvers(options.weights);
     for (const std::string& solver : options.solvers) solvers.make(solver);  // errors come first
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     std::vector<SceneRow> rows;
     Progress line;
     std::printf("%s\n", scene_row_heading().c_str());

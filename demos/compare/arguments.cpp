@@ -1,5 +1,6 @@
 #include "demos/compare/arguments.h"
 
+#include <cstdlib>
 #include <sstream>
 
 namespace cloth {
@@ -29,6 +30,18 @@ int whole_number(const std::string& option, const std::string& text, int lowest,
     if (used != text.size() || text.empty() || value < lowest || value > highest)
         throw UsageError(option + " " + text + ": give a whole number from " +
                          std::to_string(lowest) + " to " + std::to_string(highest));
+    return value;
+}
+
+double number_in_range(const std::string& option, const std::string& text, double lowest,
+                       double highest) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (text.empty() || *end != '\0' || !(value >= lowest && value <= highest)) {
+        std::ostringstream message;
+        message << option << " " << text << ": give a number from " << lowest << " to " << highest;
+        throw UsageError(message.str());
+    }
     return value;
 }
 

@@ -27,4 +27,8 @@ std::string join_list(const std::vector<std::string>& items, const std::string& 
 /// @throws UsageError naming option and range if `text` is no whole number from lowest to highest
 int whole_number(const std::string& option, const std::string& text, int lowest, int highest);
 
+/// @throws UsageError naming option and range if `text` is no number from lowest to highest, as NaN
+double number_in_range(const std::string& option, const std::string& text, double lowest,
+                       double highest);
+
 }  // namespace cloth

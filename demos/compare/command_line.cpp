@@ -23,6 +23,16 @@ CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value
     return app.add_option(name, value, description)->check(check)->type_name("N");
 }
 
+CLI::Option* add_number(CLI::App& app, const std::string& name, double& value, double lowest,
+                        double highest, const std::string& description) {
+    // NaN passes CLI::Range.
+    const auto check = [name, lowest, highest](const std::string& text) {
+        number_in_range(name, text, lowest, highest);
+        return std::string();
+    };
+    return app.add_option(name, value, description)->check(check)->type_name("N");
+}
+
 CLI::Option* add_rate(CLI::App& app, int& rate) {
     return app.add_option("--rate", rate, "frames per second, and steps: 30 (default), 60 or 120")
         ->check(CLI::IsMember({30, 60, 120}).description(""))

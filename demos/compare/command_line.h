@@ -21,6 +21,10 @@ void set_up(CLI::App& app);
 CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
                               int highest, const std::string& description);
 
+/// An option whose value is a number. @param value  kept if the option is not given
+CLI::Option* add_number(CLI::App& app, const std::string& name, double& value, double lowest,
+                        double highest, const std::string& description);
+
 /// The option --rate: frames and steps per second, of which 1/240 s is a whole part.
 CLI::Option* add_rate(CLI::App& app, int& rate);
 

@@ -73,7 +73,7 @@ std::vector<std::string> garment_files(const std::string& garment) {
 }
 
 std::vector<std::string> motion_files(const std::string& motion) {
-    if (fs::path(motion).extension() != ".bvh" || !fs::is_regular_file(motion)) return {};
+    if (!fs::is_regular_file(motion)) return {};
     return {motion};
 }
 

@@ -320,6 +320,9 @@ std::optional<StepSettings> small_steps_named(const std::string& solver,
 
 std::unique_ptr<Stepper> make_solver(const std::string& name, const ComparisonScene& scene,
                                      const SolverSettings& settings) {
+    if (!settings.weights.empty() && !std::filesystem::is_directory(settings.weights))
+        throw UsageError("--weights " + settings.weights +
+                         ": there is no such folder; give one with NAME.safetensors");
     refuse_file_of(name, settings.weights);
     const size_t limit = name.rfind('@');
     if (limit != std::string::npos) {

@@ -6,6 +6,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
+#include "data/files/make_folder.h"
 #include "demos/compare/input_files.h"
 #include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
@@ -47,6 +48,7 @@ std::string work_file(const CompareOptions& options, const std::string& name) {
 }
 
 void prepare_work_folder(const CompareOptions& options) {
+    make_folder(options.out);
     const std::string path = work_file(options, "settings.json");
     const json before = read_record(path), scene = scene_record(options);
     json solvers = json::object();
@@ -62,7 +64,7 @@ void prepare_work_folder(const CompareOptions& options) {
                 std::filesystem::remove(work_file(options, solver + ending), ignored);
         solvers[solver] = files;
     }
-    std::filesystem::create_directories(options.out + "/parts");
+    make_folder(options.out + "/parts");
     write_text_file(path, json{{"scene", scene}, {"solvers", solvers}}.dump(1));
 }
 

@@ -22,6 +22,7 @@ const char* const usage =
     "  --list          tables, their files, and the commands that measure them\n"
     "  --measure NAME  run the command of this table or file again, then write all tables\n"
     "  --root DIR      of the sources (default: the current folder)\n"
+    "  --help          this text\n"
     "A page has a table between the lines <!-- table: NAME --> and <!-- end of table -->.\n";
 
 struct Options {
@@ -34,6 +35,7 @@ Options parse_options(const std::vector<std::string>& arguments) {
     for (size_t i = 0; i < arguments.size(); ++i) {
         const std::string& option = arguments[i];
         const bool has_value = i + 1 < arguments.size();
+        if (option == "--help" || option == "-h") throw HelpText(usage);
         if (option == "--check")
             options.check = true;
         else if (option == "--list")
@@ -65,13 +67,14 @@ std::vector<std::string> data_of(const Registry& registry, const std::string& na
 
 /// Writes or checks the pages. @return how many differ
 int update_pages(const Registry& registry, const Options& options) {
-    int different = 0;
+    int different = 0, tables = 0;
     for (const std::string& page : markdown_pages(options.root)) {
         const std::string text = read_file(page);
         const std::string wanted =
             with_tables(page, text, [&](const std::string& name) -> std::optional<std::string> {
                 const DocTable* table = registry.find_table(name);
                 if (!table) return std::nullopt;
+                ++tables;
                 return table_text(registry, *table, options.root, page);
             });
         if (text == wanted) continue;
@@ -81,6 +84,9 @@ int update_pages(const Registry& registry, const Options& options) {
         else
             write_text_file(page, wanted);
     }
+    if (tables == 0)
+        throw LoadError(options.root, "", "no page under it has a table",
+                        "give the folder of the sources: --root DIR");
     return different;
 }
 
@@ -107,6 +113,9 @@ int main(int argc, char** argv) {
         Options options = parse_options(std::vector<std::string>(argv + 1, argv + argc));
         options.root = std::filesystem::canonical(options.root).string();
         return run(options);
+    } catch (const HelpText& help) {
+        std::printf("%s", help.what());
+        return 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "%s\n", error.what());
         return 1;

@@ -3,9 +3,9 @@
 #include <omp.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <numeric>
 
+#include "data/files/make_folder.h"
 #include "demos/compare/command_line.h"
 #include "demos/compare/input_files.h"
 #include "demos/compare/progress.h"
@@ -78,7 +78,7 @@ void run(const HardCaseOptions& options) {
     if (options.list) return list_cases();
     const SolverSettings solver{options.weights, options.threads, nullptr};
     check_steppers(options.steppers, solver);
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     const int threads = options.threads == 0 ? omp_get_max_threads() : options.threads;
     HardReport report(options.out + "/hard_cases.json", threads, options.resume);
     Progress line;

@@ -34,10 +34,9 @@ HardCaseOptions parse_hard_case_options(const std::vector<std::string>& argument
              "reference, newton-K, quasi-newton-K, quasi-newton-KsR[-cgN],\n"
              "quasi-newton-KxS, xpbd-N, bullet, bullet-fine, bullet-KxS,\n"
              "or a network NAME[+K]");
-    app.add_option("--frames-scale", options.frames_scale,
-                   "runs S times the frames of each case, 0.001 to 1000 (default 1);\n"
-                   "the bounds on its end count only if it runs in full")
-        ->check(CLI::Range(1e-3, 1e3).description(""))
+    add_number(app, "--frames-scale", options.frames_scale, 1e-3, 1e3,
+               "runs S times the frames of each case, 0.001 to 1000 (default 1);\n"
+               "the bounds on its end count only if it runs in full")
         ->type_name("S");
     add_whole_number(app, "--starts", options.starts, 1, 1000,
                      "runs each case N times, all but the first from a start in which\n"

@@ -5,6 +5,7 @@
 
 #include "data/body/garment_fit.h"
 #include "data/core/carry_over.h"
+#include "data/files/make_folder.h"
 #include "data/files/mesh_io.h"
 #include "data/files/painted_mesh.h"
 #include "demos/import_garment/picture.h"
@@ -63,7 +64,7 @@ ImportResult import_file(const ImportOptions& options) {
     const std::vector<GoalLimits> limits = carried_limits(import, painted);
     const Image picture = options.picture ? import_picture(import, wearer.skin) : Image();
 
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     ImportResult result;
     std::vector<WrittenGarment> written;
     const std::vector<std::string> names = file_names(options, import);

@@ -224,14 +224,25 @@ std::string remedy_of_move(const ImportOptions& options, const Points& in_file, 
     return remedy;
 }
 
+/// The options that a guess asks for, and those that it was made without.
+std::string remedy_of_guess(const PlaceGuess& guess, const ImportOptions& options) {
+    const bool turn = guess.z_up && !options.z_up;
+    std::string give, leave;
+    if (!guess.z_up && options.z_up) leave = "--up";
+    if (!options.move.isZero()) leave += leave.empty() ? "--move" : " and --move";
+    if (guess.unit.metres != options.scale || turn || leave.empty())
+        give = std::string("--unit ") + guess.unit.name + (guess.z_up ? " --up z" : "");
+    if (!leave.empty()) leave = "leave " + leave + " out";
+    return give + (give.empty() || leave.empty() ? "" : " and ") + leave + " if the file is in " +
+           guess.unit.plural + (guess.z_up ? " with z up" : "");
+}
+
 /// What is said of a garment that is elsewhere.
 [[noreturn]] void refuse_place(const ImportOptions& options, const Points& in_file,
                                const TriMesh& mesh, const TriMesh& skin) {
     std::string remedy;
     for (const PlaceGuess& guess : guess_place(in_file, skin.vertices))
-        remedy += (remedy.empty() ? "" : ", or ") + std::string("--unit ") + guess.unit.name +
-                  (guess.z_up ? " --up z" : "") + " if the file is in " + guess.unit.plural +
-                  (guess.z_up ? " with z up" : "");
+        remedy += (remedy.empty() ? "" : ", or ") + remedy_of_guess(guess, options);
     if (remedy.empty()) remedy = remedy_of_move(options, in_file, mesh, skin);
     throw ArgumentError(options.file,
                         "it is not where the character is: " + size_text(mesh.vertices) +

@@ -6,6 +6,7 @@
 
 #include "data/body/body_shapes.h"
 #include "data/body/outfit.h"
+#include "data/files/make_folder.h"
 #include "demos/compare/body_named.h"
 #include "demos/lookbook/look.h"
 #include "render/montage.h"
@@ -150,7 +151,7 @@ class Page {
 
 nlohmann::ordered_json make_lookbook(const LookbookOptions& options,
                                      const ProgressFunction& progress) {
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     OsmesaSettings sizes;
     sizes.width = width;
     sizes.height = height;

@@ -12,6 +12,7 @@
 #include "data/authoring/make_garment.h"
 #include "data/authoring/sheet.h"
 #include "data/core/paths.h"
+#include "data/files/make_folder.h"
 #include "data/files/mesh_io.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/body_scene.h"
@@ -123,7 +124,7 @@ void make_cape(const Options& options) {
 }
 
 void make_garments(const Options& options) {
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     const Wearer person = wearer(options);
     if (options.garments.empty()) {
         for (const char* name : all_garments) make_committed(options, person, name);

@@ -2,8 +2,8 @@
 // other or at the same time. See --help.
 
 #include <cstdio>
-#include <filesystem>
 
+#include "data/files/make_folder.h"
 #include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
 #include "demos/many_characters/crowd_run.h"
@@ -17,7 +17,7 @@ namespace {
 
 void many_characters(const ManyCharactersOptions& options) {
     const int threads = static_cast<int>(pin_threads(options.threads).size());
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     nlohmann::ordered_json document = {{"provenance", provenance_json(threads)},
                                        {"rows", nlohmann::ordered_json::array()}};
     Progress line;

@@ -6,6 +6,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
+#include "data/files/make_folder.h"
 #include "demos/provenance/provenance.h"
 #include "render/replaced_file.h"
 
@@ -45,7 +46,7 @@ Json load(const std::string& path) {
 
 PaperReport::PaperReport(const std::string& folder, int threads, bool again)
     : m_path(folder + "/paper_tables.json") {
-    std::filesystem::create_directories(folder);
+    make_folder(folder);
     m_document["provenance"] = provenance_json(threads);
     for (const char* list : lists) m_document[list] = Json::array();
     if (!again && std::filesystem::exists(m_path)) keep_rows_of(load(m_path));

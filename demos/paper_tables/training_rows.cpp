@@ -4,6 +4,7 @@
 
 #include "data/core/errors.h"
 #include "data/core/paths.h"
+#include "data/files/make_folder.h"
 #include "demos/compare/input_files.h"
 #include "demos/compare/json_numbers.h"
 #include "demos/train_series/child_process.h"
@@ -25,7 +26,7 @@ ordered_json number_in(const ordered_json& row, const std::string& column) {
 ChildResult train(const std::string& network, int iterations, const TrainingRowSettings& settings) {
     const std::string folder = settings.work + "/" + network + "_" + std::to_string(iterations);
     std::filesystem::remove_all(folder);
-    std::filesystem::create_directories(folder);
+    make_folder(folder);
     std::vector<std::string> command = {settings.train, "--recipe", "kicks", "--seed", "11"};
     const std::vector<std::string> size =
         network == smallest

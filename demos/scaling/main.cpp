@@ -1,8 +1,8 @@
 // scaling: time and memory of solvers against the number of vertices. See --help.
 
 #include <cstdio>
-#include <filesystem>
 
+#include "data/files/make_folder.h"
 #include "demos/compare/command_line.h"
 #include "demos/compare/progress.h"
 #include "demos/provenance/provenance.h"
@@ -29,7 +29,7 @@ void scaling(const ScalingOptions& options) {
     settings.solvers = options.solvers;
     settings.solver.threads = threads;
     settings.warm_up = options.warm_up;
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     Progress line;
     std::vector<ScalingRow> rows;
     for (const std::string& scene : options.scenes)

@@ -4,6 +4,7 @@
 
 #include "data/authoring/make_garment.h"
 #include "data/core/paths.h"
+#include "data/files/make_folder.h"
 #include "data/files/mesh_io.h"
 #include "demos/speed_error/scenes.h"
 
@@ -15,7 +16,7 @@ std::string garment_file(const SizedSceneSettings& settings) {
     const std::string path =
         settings.work + "/" + settings.name + "_" + std::to_string(settings.vertices) + ".obj";
     if (std::filesystem::exists(path)) return path;
-    std::filesystem::create_directories(settings.work);
+    make_folder(settings.work);
     GarmentRecipe recipe = load_garment_recipe(asset_path("garments/" + settings.name + ".json"));
     recipe.target_vertices = settings.vertices;
     save_obj(path, make_garment(Body::load_default(), recipe).worn);

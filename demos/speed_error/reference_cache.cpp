@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "data/files/make_folder.h"
+
 namespace cloth {
 
 /// Goes on with a trajectory to so many frames.
@@ -27,7 +29,7 @@ static Trajectory kept(const std::string& file, const ClothState& start, int fra
 ReferenceCache::ReferenceCache(const std::string& folder, const std::string& name,
                                const ComparisonScene& scene)
     : m_scene(scene) {
-    std::filesystem::create_directories(folder);
+    make_folder(folder);
     m_prefix = folder + "/" + name + "_" + std::to_string(scene.garment().vertex_count());
 }
 

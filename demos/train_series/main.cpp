@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "data/files/make_folder.h"
 #include "demos/compare/arguments.h"
 #include "demos/compare/command_line.h"
 #include "demos/train_series/series_run.h"
@@ -66,8 +67,8 @@ void run(const Options& options) {
         std::printf("%s\n", line.c_str());
         std::fflush(stdout);
     };
+    make_folder(options.out);
     const nlohmann::ordered_json report = run_series(series, options.settings, say);
-    std::filesystem::create_directories(options.out);
     write_text_file(options.out + "/train_series.json", report.dump(1) + "\n");
     std::printf("%s/train_series.json\n", options.out.c_str());
 }

@@ -7,6 +7,7 @@
 #include "data/core/check_range.h"
 #include "data/core/errors.h"
 #include "data/core/read_file.h"
+#include "data/files/make_folder.h"
 #include "demos/compare/arguments.h"
 #include "demos/provenance/provenance.h"
 #include "demos/train_series/child_process.h"
@@ -70,7 +71,7 @@ ordered_json finished(const Job& job, int iterations) {
 }
 
 ordered_json train(const Job& job, int iterations, const SeriesSettings& settings) {
-    std::filesystem::create_directories(job.folder);
+    make_folder(job.folder);
     const std::string log = job.folder + "/train.log";
     const bool goes_on = std::filesystem::exists(job.folder + "/checkpoint.pt");
     std::vector<std::string> command = {settings.train};

@@ -15,8 +15,7 @@ void add_start(CLI::App& app, ViewerOptions& options) {
     app.add_option("--colours", options.colours, "what the cloth's colours show at the start")
         ->check(CLI::IsMember({"garments", "stretch", "contact"}).description(""))
         ->type_name("garments|stretch|contact");
-    app.add_option("--wind", options.wind, "its speed at the start (m/s), 0 to 20")
-        ->check(CLI::Range(0.0, 20.0).description(""))
+    add_number(app, "--wind", options.wind, 0.0, 20.0, "its speed at the start (m/s), 0 to 20")
         ->type_name("SPEED");
     app.add_flag("--wireframe", options.wireframe, "the edges of the cloth are shown");
 }

@@ -10,6 +10,7 @@
 #include "data/files/cache_writer.h"
 #include "data/files/mesh_io.h"
 #include "tests/data/files/file_fixture.h"
+#include "tests/data/files/gltf_file.h"
 
 namespace cloth::hello_character_test {
 
@@ -47,6 +48,18 @@ TEST_F(HelloCharacter, WritesGarmentAndCharacterOfTheSameTime) {
     EXPECT_LT((written - end).cwiseAbs().maxCoeff(), 1e-9);
     EXPECT_GT((written - skin.vertices(0.05)).cwiseAbs().maxCoeff(), 1e-4)
         << "the end that was asked for is another time";
+}
+
+TEST_F(HelloCharacter, AnEndlessAnimationIsRefused) {
+    test::GltfFile strip;
+    constexpr size_t times = 5, last = 11;
+    strip.set<float>(times, last, 1e30f);
+    strip.save(path("strip.gltf"));
+    const std::string text = run("--character " + path("strip.gltf") + " --garment " + cape, 2);
+    EXPECT_NE(text.find("its animation is longer than an hour, by the time of its last key. "
+                        "Remedy: give --seconds"),
+              std::string::npos)
+        << text;
 }
 
 TEST_F(HelloCharacter, ItsOwnInputIsNotOverwritten) {

@@ -36,6 +36,7 @@ refused "--target-iterations: takes whole numbers only. Remedy: give 7" --target
 refused "--rollout: takes whole numbers only" --rollout 2.5
 refused "--rollout: 1e+300 is out of range. Remedy: use 1 to 100" --rollout 1e300
 refused "--rollout: nan is out of range" --rollout nan
+refused "the folder cannot be made" --out "$out/log/training"
 
 # What would be overwritten.
 for file in weights.safetensors metrics.csv rollouts.csv; do

@@ -4,6 +4,7 @@
 
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <cstdlib>
 
 #include "data/core/paths.h"
 #include "tests/data/files/file_fixture.h"
@@ -136,6 +137,12 @@ TEST_F(MotionFile, BrokenFilesNameLineAndRemedy) {
         {with_frames("0 0 0 0 0 0 0 0\n", 1), "line 19: the row has 8 values for 9 channels"},
         {with_frames("0 0 0 0 0 0 0 0 0 0\n", 1), "line 19: the row has 10 values for 9"},
         {with_frames("", 0), "line 17: the motion has no frames"},
+        {with_frames("", -3), "line 17: the number of frames, '-3', is out of range"},
+        {with_frames(row, 2000000000), "line 17: the number of frames, '2000000000', is out of"},
+        {replaced(whole, "Frames: 2", "Frames: 1.5"), "the number of frames, '1.5', is out of"},
+        {with_frames(row + "0 1e300 0 0 0 0 0 0 0\n", 2), "line 20: the root is more than 1,000"},
+        {with_frames("0 -2e6 0 0 0 0 0 0 0\n", 1), "line 19: the root is more than 1,000 km"},
+        {replaced(whole, "OFFSET 0 0.8 0", "OFFSET 0 1e300 0"), "line 8: the OFFSET is out of"},
         {replaced(whole, "CHANNELS 3", "CHANNELS 4"), "line 9: CHANNELS announces another number"},
         {replaced(whole, "Xrotation Yrotation\n", "Xrotation Wrotation\n"),
          "line 9: unknown channel 'Wrotation'"},
@@ -207,6 +214,33 @@ TEST(Motions, AreFoundByName) {
     EXPECT_GT(load_motion_by_name(model_path("BVH/01_03.bvh")).frame_count(), 1000);
     expect_load_error([] { load_motion_by_name("99_99"); }, "99_99", "01_01 01_03 Boxing_Toes");
     expect_load_error([] { list_motions("/no/such/folder"); }, "/no/such/folder", "not a folder");
+}
+
+TEST_F(MotionFile, AnyFileThatExistsIsRead) {
+    const std::string text = with_frames("0 0 0 0 0 0 0 0 0\n", 1);
+    for (const std::string name : {"WALK.BVH", "walk.bvh", "walk", "walk.txt"})
+        EXPECT_EQ(load_motion_by_name(write(name, text)).frame_count(), 1) << name;
+    EXPECT_EQ(list_motions(path("")),
+              (std::vector<std::string>{path("WALK.BVH"), path("walk.bvh")}));
+    expect_load_error([&] { load_motion_by_name(write("notes", "a walk\n")); }, path("notes"),
+                      "does not begin with HIERARCHY");
+    expect_load_error([&] { load_motion_by_name(path("")); }, path(""), "is a folder");
+}
+
+TEST_F(MotionFile, ANumberIsThatOfOneClip) {
+    const char* const variable = "CLOTH_SHARED_DATA";
+    const char* const before = std::getenv(variable);
+    const std::string old = before ? before : "";
+    setenv(variable, path("").c_str(), 1);
+    std::filesystem::create_directories(path("motions/train"));
+    for (const std::string name : {"90_1_walk", "90_2_run", "90_2_run_fast", "91_1_walk"})
+        write("motions/train/" + name + ".bvh", with_frames("0 0 0 0 0 0 0 0 0\n", 1));
+    EXPECT_EQ(load_motion_by_name("90_1").name, "90_1_walk");
+    EXPECT_EQ(load_motion_by_name("91").name, "91_1_walk");
+    EXPECT_EQ(load_motion_by_name("90_2_run").name, "90_2_run") << "a whole name";
+    expect_load_error([] { load_motion_by_name("90"); }, "90",
+                      "several motions are called so. Remedy: give one of: 90_1_walk 90_2_run");
+    before ? setenv(variable, old.c_str(), 1) : unsetenv(variable);
 }
 
 TEST(Motions, TheCutOf0101IsTheSharedClip) {

@@ -100,6 +100,29 @@ TEST_F(Caches, AnUnfinishedOneLeavesTheOldOneAlone) {
     }
 }
 
+TEST_F(Caches, OneRunAtATimeWritesToOne) {
+    std::filesystem::create_directory(path("again"));
+    for (const std::string name : {"a.pc2", "a.mdd", "a.usda", "a.glb", "a"}) {
+        SCOPED_TRACE(name);
+        const std::string written = name == "a" ? path("a") : unfinished_cache(path(name));
+        const auto first = make_cache_writer(path(name), sample_mesh(), {30.0, 3});
+        add_frames(*first, 2);
+        for (const CacheStart start : {CacheStart::anew, CacheStart::go_on})
+            expect_load_error(
+                [&] {
+                    make_cache_writer(path(name), sample_mesh(), {30.0, 2}, start);
+                },
+                written, "is being written by another run");
+        add_frames(*first, 3);
+        first->finish();
+        write_cache(path("again/" + name), 3);
+    }
+    for (const std::string name : single_files)
+        EXPECT_EQ(read_file(path(name)), read_file(path("again/" + name))) << name;
+    EXPECT_EQ(read_file(path("a/a_0003.obj")), read_file(path("again/a/a_0003.obj")));
+    write_cache(path("a.pc2"), 1);  // the lock ends with the run
+}
+
 TEST_F(Caches, FramesThatCannotBeRightAreRefused) {
     for (const std::string name : {"a.pc2", "a.mdd", "a.usda", "a.glb", "a"}) {
         SCOPED_TRACE(name);

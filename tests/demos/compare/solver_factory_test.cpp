@@ -63,6 +63,17 @@ TEST(SolverFactory, NetworksAreCalledWhatTheUserChose) {
     EXPECT_EQ(make_solver("bf16-small", scene, {})->name(), "small");
 }
 
+TEST(SolverFactory, AFolderOfNetworksThatIsNotThereIsNamed) {
+    for (const std::string name : {"small", "quasi-newton-3"}) try {
+            make_solver(name, FreeSheet(), {"/no/such", 1, nullptr});
+            ADD_FAILURE() << name;
+        } catch (const UsageError& error) {
+            EXPECT_STREQ(error.what(),
+                         "--weights /no/such: there is no such folder; give one with "
+                         "NAME.safetensors");
+        }
+}
+
 TEST(SolverFactory, NetworksKeepToTheirTimeStep) {
     for (const std::string name : {"small", "small+3", "small+3@20"}) {
         const std::string text = refusal(name, 60);

@@ -135,4 +135,13 @@ TEST_F(WorkFolder, ARecordThatIsDamagedIsNamed) {
     EXPECT_TRUE(left().empty());
 }
 
+using OutFolder = FileTest;
+
+TEST_F(OutFolder, ThatCannotBeMadeIsNamedWithARemedy) {
+    CompareOptions options;
+    options.out = write("file", "") + "/out";
+    test::expect_load_error([&] { prepare_work_folder(options); }, options.out,
+                            "the folder cannot be made");
+}
+
 }  // namespace cloth::work_folder_test

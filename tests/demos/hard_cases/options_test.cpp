@@ -105,8 +105,8 @@ TEST(HardCaseOptions, WrongValuesAreRefused) {
     using Arguments = std::vector<std::string>;
     for (const Arguments& wrong :
          {Arguments{"--moon", "1"}, Arguments{"--cases"}, Arguments{"--frames-scale", "0"},
-          Arguments{"--frames-scale", "1x"}, Arguments{"--threads", "-1"},
-          Arguments{"--steppers", ""}, Arguments{"--help"}})
+          Arguments{"--frames-scale", "1x"}, Arguments{"--frames-scale", "nan"},
+          Arguments{"--threads", "-1"}, Arguments{"--steppers", ""}, Arguments{"--help"}})
         EXPECT_THROW(parse_hard_case_options(wrong), UsageError) << wrong[0];
 }
 

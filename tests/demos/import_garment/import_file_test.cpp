@@ -104,6 +104,25 @@ TEST_F(ImportFile, GoalsThatArePaintedAreCarriedOver) {
     EXPECT_EQ(load_outfit(result.files[0]).garment.vertex_count(), made.mesh.vertices.rows());
 }
 
+TEST_F(ImportFile, OptionsThatMoveItAwayAreToBeLeftOut) {
+    const TriMesh shirt = worn_garment("tshirt_1000");
+    save_obj(path("thing.obj"), shirt);
+    TriMesh large = shirt;
+    large.vertices *= 100.0;
+    save_obj(path("large.obj"), large);
+    const std::pair<ImportOptions, std::string> cases[] = {
+        {options_for("thing.obj", {"--move", "0", "5", "0"}),
+         "Remedy: leave --move out if the file is in metres"},
+        {options_for("thing.obj", {"--up", "z"}),
+         "Remedy: leave --up out if the file is in metres"},
+        {options_for("thing.obj", {"--up", "z", "--move", "0", "5", "0"}),
+         "Remedy: leave --up and --move out if the file is in metres"},
+        {options_for("large.obj", {"--move", "0", "5", "0"}),
+         "Remedy: --unit cm and leave --move out if the file is in centimetres"}};
+    for (const auto& [options, remedy] : cases)
+        EXPECT_NE(refusal(options).find(remedy), std::string::npos) << refusal(options);
+}
+
 TEST_F(ImportFile, PiecesAreFilesAndAnOutfitFromTheOutside) {
     const ImportResult result =
         import_file(options_for(together(worn_garment("pants_1000"), worn_garment("shirt_1000"))));

@@ -43,7 +43,10 @@ TEST(ViewerOptions, ScenesAreThoseOfBake) {
 TEST(ViewerOptions, WhatCannotBeRightIsRefusedByName) {
     EXPECT_NE(refusal({"--garment", "toga"}).find("toga"), std::string::npos);
     EXPECT_NE(refusal({"--body", "giant"}).find("giant"), std::string::npos);
-    EXPECT_NE(refusal({"--wind", "50"}).find("--wind"), std::string::npos);
+    for (const std::string speed : {"50", "-1", "nan", "2x", ""})
+        EXPECT_EQ(
+            refusal({"--wind", speed}).find("--wind " + speed + ": give a number from 0 to 20"),
+            0u);
     EXPECT_NE(refusal({"--colours", "heat"}).find("--colours"), std::string::npos);
     EXPECT_NE(refusal({"--width", "10"}).find("--width"), std::string::npos);
     EXPECT_NE(refusal({"--body", "heavy", "--character", "a.glb"}).find("--character"),
