@@ -124,6 +124,11 @@ void checkGoals(const btSoftBody& body, const cloth::SkinGoals& goals, double du
                             "check the animation before handing it over");
 }
 
+/// How many nodes and faces it has, in one number: all that tells bodies in no world apart.
+long meshSizeOf(const btSoftBody& body) {
+    return (static_cast<long>(body.m_nodes.size()) << 32) + body.m_faces.size();
+}
+
 constexpr btScalar kMostGravity = 100;  // m/s^2: four times Jupiter's
 
 /// What cloth and bodies did to each other, or the scene to the cloth, that a user should know of.
@@ -156,11 +161,21 @@ std::vector<std::string> troublesOf(const btSoftBody& body, const cloth::Stepper
             name + ": node " + std::to_string(result.stretched_anchor) +
             ": its anchor is farther away than the cloth reaches, an edge there is over twice as "
             "long as at rest. Remedy: anchor the node where it is, or take a stiffer fabric");
+    if (result.left_behind)
+        troubles.push_back(
+            name +
+            ": it was paused by m_cfg.timescale, and the animated obstacle at it went away, so it "
+            "goes on alone. Remedy: pause the character, too, or teleport() the cloth to it before "
+            "it goes on");
     if (result.idle_anchor >= 0)
         troubles.push_back(name + ": node " + std::to_string(result.idle_anchor) +
                            ": appendDeformableAnchor() to a rigid body does nothing outside of "
                            "Bullet's deformable "
                            "world. Remedy: appendAnchor(), or a link of a btMultiBody");
+    if (!(body.m_cfg.timescale >= 0))
+        troubles.push_back(name +
+                           ": m_cfg.timescale is negative or no number, and counts as 0: it is "
+                           "paused. Remedy: 0 or more");
     if (!(body.m_cfg.kDF >= 0))
         troubles.push_back(name +
                            ": m_cfg.kDF is negative or no number, and counts as 0. Remedy: 0 to 1");
@@ -201,19 +216,30 @@ btGnnSoftBodySolver::btGnnSoftBodySolver(cloth::StepperFactory factory,
 btGnnSoftBodySolver::~btGnnSoftBodySolver() = default;
 
 /// What is known of the body. Nothing is known of one that has left the world since, or of another
-/// one at its address.
+/// one at its address: of one that was in no world, the numbers of nodes and faces must do.
 btGnnSoftBodySolver::Entry& btGnnSoftBodySolver::entryOf(const btSoftBody* body) {
     Entry& entry = m_entries[body];
-    if (body && entry.worldId != 0 && entry.worldId != worldIdOf(*body)) entry = Entry();
+    if (!body) return entry;
+    const bool left = entry.worldId != 0 && entry.worldId != worldIdOf(*body);
+    const bool is_another =
+        entry.worldId == 0 && entry.mesh != 0 && entry.mesh != meshSizeOf(*body);
+    if (left || is_another) entry = Entry();
+    return entry;
+}
+
+/// The same, to be changed for the body as it is now.
+btGnnSoftBodySolver::Entry& btGnnSoftBodySolver::entryToSet(const btSoftBody& body) {
+    Entry& entry = entryOf(&body);
+    entry.worldId = worldIdOf(body);
+    entry.mesh = entry.worldId == 0 ? meshSizeOf(body) : 0;
     return entry;
 }
 
 void btGnnSoftBodySolver::attach(btSoftBody* body) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.detached = false;
     entry.asked = true;
-    entry.worldId = 0;
     build(*body, entry);
 }
 
@@ -221,26 +247,24 @@ void btGnnSoftBodySolver::attach(btSoftBody* body, const Garment& garment,
                                  cloth::StepperFactory factory) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
     cloth::checkGarmentFits(*body, garment);
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.given = std::make_shared<const Garment>(garment);
     if (garment.has_goals()) entry.limits = garment.goal_limits();
     entry.factory = std::move(factory);
     entry.detached = false;
     entry.asked = true;
-    entry.worldId = 0;
     build(*body, entry);
 }
 
 void btGnnSoftBodySolver::attach(btSoftBody* body, const cloth::Fabric& fabric,
                                  cloth::StepperFactory factory) {
     if (!body) throw ArgumentError("attach()", "the soft body is null", "create it first");
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.given = nullptr;
     entry.fabric = fabric;
     entry.factory = std::move(factory);
     entry.detached = false;
     entry.asked = true;
-    entry.worldId = 0;
     build(*body, entry);
 }
 
@@ -248,7 +272,12 @@ void btGnnSoftBodySolver::detach(btSoftBody* body) {
     Entry& entry = entryOf(body);
     if (body) leaveToBullet(*body, entry);
     entry.detached = true;
-    entry.worldId = 0;
+    entry.worldId = 0;  // it holds where the body is put into a world anew
+    entry.mesh = body && worldIdOf(*body) == 0 ? meshSizeOf(*body) : 0;
+}
+
+void btGnnSoftBodySolver::forget(const btSoftBody* body) {
+    m_entries.erase(body);
 }
 
 void btGnnSoftBodySolver::leaveToBullet(btSoftBody& body, Entry& entry) {
@@ -284,6 +313,7 @@ void btGnnSoftBodySolver::build(btSoftBody& body, Entry& entry) {
         body, std::move(garment), std::move(stepper), m_settings.sleepMotion,
         m_settings.friction == btGnnFriction::bullet);
     entry.built = ++m_built;
+    tellOfPlace(body);
     joinGoals(body, entry);
     entry.step->setRoot(entry.root);
     applyDetail(body, entry);
@@ -415,7 +445,7 @@ void btGnnSoftBodySolver::optimize(btAlignedObjectArray<btSoftBody*>& softBodies
 void btGnnSoftBodySolver::setGoalLimits(btSoftBody* body, const cloth::GoalLimits& limits) {
     if (!body) throw ArgumentError("setGoalLimits()", "the soft body is null", "create it first");
     cloth::check(limits, body->m_nodes.size(), cloth::softBodyName(*body));
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.limits.reset();
     if (!limits.empty()) entry.limits = limits;
     if (entry.step) tryBuild(*body, entry);
@@ -424,7 +454,7 @@ void btGnnSoftBodySolver::setGoalLimits(btSoftBody* body, const cloth::GoalLimit
 void btGnnSoftBodySolver::setGoals(btSoftBody* body, cloth::SkinGoals goals, double duration) {
     if (!body) throw ArgumentError("setGoals()", "the soft body is null", "create it first");
     checkGoals(*body, goals, duration);
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     goalsOf(*body, entry);
     constexpr double kJump = 0.5;  // m: nobody moves as far between the end of a step and the next
     const double jump = std::sqrt((goals.x0 - entry.goals->now()).rowwise().squaredNorm().mean());
@@ -450,7 +480,7 @@ void btGnnSoftBodySolver::setInertia(btSoftBody* body, double linear, double ang
     if (!body) throw ArgumentError("setInertia()", "the soft body is null", "create it first");
     cloth::check_range(cloth::softBodyName(*body) + ": linear inertia", linear, 0.0, 1.0);
     cloth::check_range(cloth::softBodyName(*body) + ": angular inertia", angular, 0.0, 1.0);
-    rootOf(entryOf(body)).setInertia(linear, angular);
+    rootOf(entryToSet(*body)).setInertia(linear, angular);
 }
 
 void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& from,
@@ -463,7 +493,7 @@ void btGnnSoftBodySolver::setRootMotion(btSoftBody* body, const btTransform& fro
     if (!cloth::isRigid(from) || !cloth::isRigid(to))
         throw ArgumentError(cloth::softBodyName(*body) + ": setRootMotion()",
                             "a pose scales, shears or mirrors", "give the pose of the bone alone");
-    rootOf(entryOf(body)).set(cloth::toPose(from), cloth::toPose(to), duration);
+    rootOf(entryToSet(*body)).set(cloth::toPose(from), cloth::toPose(to), duration);
     if (body->getActivationState() == ISLAND_SLEEPING && !(from == to)) body->activate();
 }
 
@@ -472,7 +502,7 @@ void btGnnSoftBodySolver::setDetail(btSoftBody* body, const btGnnDetail& detail)
     const std::string name = cloth::softBodyName(*body) + ": btGnnDetail.";
     cloth::check_range(name + "iterations", detail.iterations, 0, 1000);
     cloth::check_range(name + "worldSteps", detail.worldSteps, 1, 8);
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.detail = detail;
     if (entry.step) applyDetail(*body, entry);
 }
@@ -497,7 +527,7 @@ void btGnnSoftBodySolver::follow(btSoftBody* body, std::shared_ptr<cloth::Follow
                                 " vertices, the body has " + std::to_string(body->m_nodes.size()) +
                                 " nodes",
                             "make it for the mesh of the body, garmentOf(body)->rest()");
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.follower = std::move(follower);
     if (entry.follower) entry.follower->show(shownPositions(body), {}, {});
 }
@@ -548,7 +578,7 @@ void btGnnSoftBodySolver::showWithoutObstacles(const btSoftBody& body, Entry& en
 
 void btGnnSoftBodySolver::fadeToSkin(btSoftBody* body, double weight, double seconds) {
     if (!body) throw ArgumentError("fadeToSkin()", "the soft body is null", "create it first");
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     const auto blend = entry.blend ? entry.blend : std::make_shared<cloth::SkinBlend>();
     blend->fade_to(weight, seconds);
     if (!entry.blend) blend->follow(cloth::nodePositions(*body), {}, {});
@@ -576,7 +606,7 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
         throw ArgumentError(cloth::softBodyName(*body) + ": teleport()",
                             "the motion scales, shears or mirrors",
                             "give one that turns and moves; scale() the body to change its size");
-    Entry& entry = entryOf(body);
+    Entry& entry = entryToSet(*body);
     entry.placed = true;
     // What was cut is told by where the nodes were shown.
     if (entry.step && cloth::topologySignature(*body) != entry.topology) refresh(*body, entry);
@@ -598,8 +628,16 @@ void btGnnSoftBodySolver::teleport(btSoftBody* body, const btTransform& motion,
     if (entry.step) entry.step->restart();
     body->updateNormals();
     body->updateBounds();
+    tellOfPlace(*body);
     showWithoutObstacles(*body, entry);
     if (body->getActivationState() == ISLAND_SLEEPING) body->activate();
+}
+
+/// Skin that has moved since the last step does not pass through cloth that was not there.
+void btGnnSoftBodySolver::tellOfPlace(const btSoftBody& body) {
+    btVector3 low, high;
+    body.getAabb(low, high);
+    m_obstacles.clothWasPlaced(cloth::toVec3(low), cloth::toVec3(high));
 }
 
 /// Of skin that was put elsewhere without its cloth.

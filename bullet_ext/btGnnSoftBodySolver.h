@@ -157,6 +157,11 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
                 cloth::StepperFactory factory = nullptr);
     /// Leaves the body to Bullet's own code from now on.
     void detach(btSoftBody* body);
+    /// Drops all that was asked of a body, as its removal from the world does. To be called where a
+    /// body that was attached, or of which something was set, is deleted and never was in a world,
+    /// or was detached since its last step: the next body of as many nodes and faces at its address
+    /// would be taken for it.
+    void forget(const btSoftBody* body);
 
     /// The stepper and garment of a body; null if Bullet steps it.
     const cloth::Stepper* stepperOf(const btSoftBody* body) const;
@@ -168,6 +173,8 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
 
     /// Gives the surface of an animated obstacle before each stepSimulation(): it replaces the
     /// shape of `object` (any object of the world; its collision filter and friction are used).
+    /// If x0 is not where the surface was at the end of the last step, it goes from there to x1, or
+    /// jumps: see cloth::AnimatedObstacle.
     /// @param faces     (|F| x 3), the same pointer in every call
     /// @param x0, x1    vertices now and after `duration` seconds (|V| x 3, m, world frame)
     /// @param duration  usually the time of the stepSimulation() that follows; 0: one sub-step
@@ -292,6 +299,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
         bool detached = false;  ///< the user chose Bullet
         bool asked = false;     ///< the user chose cloth
         int worldId = 0;        ///< of the body in its world; 0: not seen there yet
+        long mesh = 0;          ///< meshSizeOf() when it was asked for in no world; 0: any
         bool seen = false;      ///< was part of the world
         std::unique_ptr<cloth::SoftBodyStep> step;
         std::shared_ptr<const cloth::Garment> given;  ///< by the user, else null
@@ -314,6 +322,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     };
 
     Entry& entryOf(const btSoftBody* body);
+    Entry& entryToSet(const btSoftBody& body);
     void build(btSoftBody& body, Entry& entry);
     void leaveToBullet(btSoftBody& body, Entry& entry);
     void followCut(btSoftBody& body, Entry& entry);
@@ -335,6 +344,7 @@ class btGnnSoftBodySolver : public btDefaultSoftBodySolver {
     void joinGoals(btSoftBody& body, Entry& entry);
     cloth::RootMotion& rootOf(Entry& entry);
     void applyDetail(const btSoftBody& body, Entry& entry);
+    void tellOfPlace(const btSoftBody& body);
     void tellOfJumps(const btSoftBody& body, Entry& entry);
     bool isStepped(const btSoftBody* body) const;
     void showFollower(const btSoftBody& body, Entry& entry);

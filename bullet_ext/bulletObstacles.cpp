@@ -27,6 +27,12 @@ bool isInWorld(const btCollisionObject& object) {
     return object.getBroadphaseHandle() != nullptr;
 }
 
+std::string nameOf(const char* kind, const btCollisionObject& object) {
+    std::ostringstream name;
+    name << kind << ' ' << object.getUserIndex() << " at " << static_cast<const void*>(&object);
+    return name.str();
+}
+
 /// Where the object was h seconds ago, by its velocity.
 Pose posePreviously(const btCollisionObject& object, double h) {
     btTransform previous = object.getWorldTransform();
@@ -104,12 +110,12 @@ void BulletObstacles::beginStep(double h) {
     m_h = h;
     ++m_step;
     m_trees->begin_step();
-    for (auto& [object, animation] : m_animated) {
-        if (animation.mesh.duration <= 0.0) animation.mesh.duration = h;
-        animation.begin = animation.end;
-        animation.end += h;
-        animation.was_in_world = animation.was_in_world || isInWorld(*object);
+    for (auto& [object, animated] : m_animated) {
+        animated.obstacle.beginStep(h, isInWorld(*object), m_placed);
+        for (const std::string& trouble : animated.obstacle.takeTroubles())
+            m_messages.push_back(nameOf("animated obstacle", *object) + ": " + trouble);
     }
+    m_placed.clear();
     forgetUnseen();
 }
 
@@ -138,13 +144,9 @@ void BulletObstacles::setAnimated(const btCollisionObject* object, AnimatedMesh 
         std::isinf(mesh.duration))
         throw ArgumentError("animated obstacle", "vertices or duration are not finite",
                             "check the animation before handing it over");
-    Animation animation(std::move(mesh));
-    const auto known = m_animated.find(object);
-    animation.was_in_world =
-        isInWorld(*object) || (known != m_animated.end() && known->second.was_in_world);
-    if (known != m_animated.end() && known->second.jumpsTo(animation.mesh.x0))
-        animation.jumped_from = known->second.box1;
-    m_animated.insert_or_assign(object, std::move(animation));
+    const auto [known, is_new] = m_animated.try_emplace(object);
+    if (is_new) known->second.id = ++m_ids;
+    known->second.obstacle.give(std::move(mesh), isInWorld(*object));
 }
 
 bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& object) const {
@@ -164,20 +166,18 @@ bool BulletObstacles::collides(const btSoftBody& body, const btCollisionObject& 
 
 /// An animation whose object has left the world has left it, too.
 bool BulletObstacles::touches(const btSoftBody& body, const btCollisionObject& object,
-                              const Animation& animation, const Vec3& low, const Vec3& high) const {
-    const bool left = animation.was_in_world && !isInWorld(object);
-    return !left && collides(body, object) && animation.near(low, high);
+                              const AnimatedObstacle& animated, const Vec3& low,
+                              const Vec3& high) const {
+    return !animated.hasLeft(isInWorld(object)) && collides(body, object) &&
+           animated.isNear(low, high);
 }
 
 double BulletObstacles::frictionOf(const btSoftBody& body, const btCollisionObject& object) {
-    if (!(object.getFriction() >= 0)) {
-        std::ostringstream message;
-        message << "collision object " << object.getUserIndex() << " at "
-                << static_cast<const void*>(&object)
-                << ": its friction is negative or no number, and counts as 0 for cloth. Remedy: "
-                   "check what the program gives to setFriction()";
-        m_messages.push_back(message.str());
-    }
+    if (!(object.getFriction() >= 0))
+        m_messages.push_back(
+            nameOf("collision object", object) +
+            ": its friction is negative or no number, and counts as 0 for cloth. Remedy: "
+            "check what the program gives to setFriction()");
     return std::min(usableFriction(body.m_cfg.kDF) * usableFriction(object.getFriction()),
                     kMostFriction);
 }
@@ -253,21 +253,14 @@ void BulletObstacles::append(const Track& track, double friction, const TimeSpan
     }
 }
 
-void BulletObstacles::append(const Animation& animation, double friction, const TimeSpan& span,
+void BulletObstacles::append(const Animated& animated, double friction, const TimeSpan& span,
                              std::vector<Obstacle>& obstacles) const {
-    const AnimatedMesh& mesh = animation.mesh;
-    const bool stands = animation.stands();
-    const auto at = [&](double time) -> Points {
-        const double s = stands ? 1.0 : (animation.begin + time) / mesh.duration;
-        if (s == 0.0) return mesh.x0;
-        if (std::abs(s - 1.0) < 1e-6) return mesh.x1;
-        return mesh.x0 + s * (mesh.x1 - mesh.x0);
-    };
     Obstacle obstacle;
-    obstacle.faces = mesh.faces;
-    obstacle.limbs = mesh.limbs;
-    obstacle.x0 = at(span.begin);
-    obstacle.x1 = at(span.begin + span.length);
+    obstacle.faces = animated.obstacle.mesh().faces;
+    obstacle.limbs = animated.obstacle.mesh().limbs;
+    obstacle.id = animated.id;
+    obstacle.x0 = animated.obstacle.at(span.begin);
+    obstacle.x1 = animated.obstacle.at(span.begin + span.length);
     obstacle.friction = friction;
     obstacles.push_back(std::move(obstacle));
 }
@@ -297,9 +290,9 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
         append(update(*object), frictionOf(body, *object), span, obstacles);
         objects.resize(obstacles.size(), object);
     }
-    for (const auto& [object, animation] : m_animated)
-        if (touches(body, *object, animation, low, high)) {
-            append(animation, frictionOf(body, *object), span, obstacles);
+    for (const auto& [object, animated] : m_animated)
+        if (touches(body, *object, animated.obstacle, low, high)) {
+            append(animated, frictionOf(body, *object), span, obstacles);
             objects.resize(obstacles.size(), object);
         }
     sortByGeometry(obstacles, objects);
@@ -307,35 +300,9 @@ std::vector<Obstacle> BulletObstacles::near(const btSoftBody& body, const Vec3& 
     return obstacles;
 }
 
-BulletObstacles::Animation::Animation(AnimatedMesh given) : mesh(std::move(given)) {
-    const auto around = [](const Points& x) -> Box {
-        return {x.colwise().minCoeff(), x.colwise().maxCoeff()};
-    };
-    box0 = around(mesh.x0);
-    box1 = around(mesh.x1);
-}
-
-bool BulletObstacles::Box::overlaps(const Vec3& other_low, const Vec3& other_high) const {
-    return (low.array() <= other_high.array()).all() && (high.array() >= other_low.array()).all();
-}
-
-bool BulletObstacles::Animation::near(const Vec3& low, const Vec3& high) const {
-    return box0.overlaps(low, high) || box1.overlaps(low, high);
-}
-
-bool BulletObstacles::Animation::jumpsTo(const Points& x) const {
-    constexpr double kJump = 0.5;  // m
-    if (x.rows() != mesh.x0.rows()) return false;
-    const double share = mesh.duration > 0.0 ? std::min(end / mesh.duration, 1.0) : 1.0;
-    const auto from = mesh.x0 + share * (mesh.x1 - mesh.x0);
-    return (x - from).rowwise().squaredNorm().mean() > kJump * kJump;
-}
-
 bool BulletObstacles::anyJumpsFrom(const Vec3& low, const Vec3& high) const {
     return std::any_of(m_animated.begin(), m_animated.end(), [&](const auto& known) {
-        const Animation& animation = known.second;
-        const bool is_new = animation.begin == 0.0;
-        return is_new && animation.jumped_from && animation.jumped_from->overlaps(low, high);
+        return known.second.obstacle.jumpsFrom(low, high);
     });
 }
 
@@ -344,11 +311,11 @@ std::vector<NearObject> BulletObstacles::objectsNear(const btSoftBody& body, con
     std::vector<NearObject> near;
     for (const btCollisionObject* object : objectsIn(body, low, high))
         near.push_back({object, worldIdOf(*object), object->getWorldTransform(),
-                        shapeSignature(*object->getCollisionShape()), false});
-    for (const auto& [object, animation] : m_animated)
-        if (touches(body, *object, animation, low, high))
-            near.push_back(
-                {object, worldIdOf(*object), object->getWorldTransform(), 0, !animation.stands()});
+                        shapeSignature(*object->getCollisionShape()), false, false});
+    for (const auto& [object, animated] : m_animated)
+        if (touches(body, *object, animated.obstacle, low, high))
+            near.push_back({object, worldIdOf(*object), object->getWorldTransform(), 0,
+                            animated.obstacle.moves(), true});
     std::sort(near.begin(), near.end(), [](const NearObject& a, const NearObject& b) {
         return std::less<const btCollisionObject*>()(a.object, b.object);
     });

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "bullet_ext/animatedObstacle.h"
 #include "bullet_ext/bulletShapes.h"
 #include "bullet_ext/partDistance.h"
 
@@ -21,15 +22,6 @@ namespace cloth {
 struct TimeSpan {
     double begin = 0.0;
     double length = 0.0;
-};
-
-/// A mesh obstacle whose vertices the user moves, such as a skinned character.
-struct AnimatedMesh {
-    std::shared_ptr<const Faces> faces;  ///< (|F| x 3), the same pointer for life
-    Points x0;                           ///< vertices now (|V| x 3, m, world frame)
-    Points x1;                           ///< vertices after `duration` (|V| x 3, m, world frame)
-    double duration = 0.0;               ///< from x0 to x1 (s); 0: one world step
-    std::shared_ptr<const std::vector<std::uint8_t>> limbs = {};  ///< see Obstacle; or null
 };
 
 /// A solid as it is at the end of a span of time.
@@ -73,7 +65,8 @@ struct NearObject {
     int world_id = 0;  ///< worldIdOf()
     btTransform pose;
     size_t shape = 0;    ///< shapeSignature()
-    bool moves = false;  ///< an animated mesh under way
+    bool moves = false;  ///< an animated mesh under way, see AnimatedObstacle::moves()
+    bool is_animated = false;
 };
 
 /// Watches the collision objects of a Bullet world and describes them as obstacles.
@@ -128,6 +121,9 @@ class BulletObstacles {
 
     void setAnimated(const btCollisionObject* object, AnimatedMesh mesh);
     void removeAnimated(const btCollisionObject* object) { m_animated.erase(object); }
+    /// Cloth in the box (m) was put where it is: animated meshes there do not move through it from
+    /// where they were at the end of the last world step.
+    void clothWasPlaced(const Vec3& low, const Vec3& high) { m_placed.push_back({low, high}); }
     /// Whether an animated mesh was in the box (m) at the end of the last world step, and starts
     /// this one more than half a metre from there.
     bool anyJumpsFrom(const Vec3& low, const Vec3& high) const;
@@ -135,8 +131,8 @@ class BulletObstacles {
     /// The object was put elsewhere at the end of the world step.
     void follow(const btCollisionObject& object);
 
-    /// Messages since the last call: shapes that cannot be obstacles, each reported once, and
-    /// frictions that are none.
+    /// Messages since the last call: shapes that cannot be obstacles, each reported once, frictions
+    /// that are none, and what is wrong with animated meshes.
     std::vector<std::string> takeMessages();
 
  private:
@@ -150,30 +146,14 @@ class BulletObstacles {
         btTransform target;                   ///< where Bullet says the object is
         double remaining = 0.0;               ///< time left to reach the target (s)
     };
-    struct Box {
-        Vec3 low, high;
-        bool overlaps(const Vec3& other_low, const Vec3& other_high) const;
-    };
-    struct Animation {
-        explicit Animation(AnimatedMesh given);
-
-        AnimatedMesh mesh;
-        Box box0, box1;  ///< around x0 and x1: every body of the world asks for them
-        std::optional<Box> jumped_from;  ///< around where it was, if it starts elsewhere
-        bool was_in_world = false;       ///< its object was, at some time
-        double begin = 0.0, end = 0.0;   ///< the present world step, counted from x0 (s)
-        bool near(const Vec3& low, const Vec3& high) const;
-        /// Whether it jumps if it starts there (|V| x 3, m) after the present world step: nobody
-        /// moves as far in no time.
-        bool jumpsTo(const Points& x) const;
-        /// A mesh that was not given anew stands still; one that was is assumed to go on as it
-        /// does.
-        bool stands() const { return begin >= mesh.duration * 0.999; }
+    struct Animated {
+        AnimatedObstacle obstacle;
+        int id = 0;  ///< Obstacle::id: one for each object, until it is removed
     };
 
     bool collides(const btSoftBody& body, const btCollisionObject& object) const;
     bool touches(const btSoftBody& body, const btCollisionObject& object,
-                 const Animation& animation, const Vec3& low, const Vec3& high) const;
+                 const AnimatedObstacle& animated, const Vec3& low, const Vec3& high) const;
     double frictionOf(const btSoftBody& body, const btCollisionObject& object);
     std::vector<const btCollisionObject*> objectsIn(const btSoftBody& body, const Vec3& low,
                                                     const Vec3& high) const;
@@ -183,14 +163,16 @@ class BulletObstacles {
     void forgetUnseen();
     void append(const Track& track, double friction, const TimeSpan& span,
                 std::vector<Obstacle>& obstacles) const;
-    void append(const Animation& animation, double friction, const TimeSpan& span,
+    void append(const Animated& animated, double friction, const TimeSpan& span,
                 std::vector<Obstacle>& obstacles) const;
 
     double m_h = 0.0;
     long m_step = 0;
     std::shared_ptr<ObstacleTrees> m_trees;
     std::map<const btCollisionObject*, Track> m_tracks;
-    std::map<const btCollisionObject*, Animation> m_animated;
+    std::map<const btCollisionObject*, Animated> m_animated;
+    int m_ids = 0;                                ///< of animated meshes so far
+    std::vector<AnimatedObstacle::Box> m_placed;  ///< cloth, since the last world step
     std::vector<std::string> m_messages;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "bullet_ext/slidingFriction.h"
 #include "bullet_ext/softAnchors.h"
@@ -80,15 +81,44 @@ bool SoftBodyStep::begin(double h, BulletObstacles& obstacles, double reach) {
     // Nodes changed since the solver looked at them: next step.
     if (m_body.m_nodes.size() != m_shown.x.rows()) return false;
     m_result.restored_nodes = restoreNodes();
-    if (!(m_h > 0.0)) return false;  // a paused body
+    if (!(m_h > 0.0)) {
+        pause(obstacles);
+        return false;
+    }
     takeConstants();
     takeNodes();
     takeForces();
     takePins();
     m_box = boxAhead(m_shown, m_h, reach);
+    resume(obstacles);
     obstacles.watch(m_body, m_box.low, m_box.high);
     m_expected.swap(expected);
     return m_begun = true;
+}
+
+/// Those around the nodes, ascending.
+std::vector<const btCollisionObject*> SoftBodyStep::animatedNear(
+    const BulletObstacles& obstacles) const {
+    std::vector<const btCollisionObject*> animated;
+    for (const NearObject& near : obstacles.objectsNear(m_body, m_box.low, m_box.high))
+        if (near.is_animated) animated.push_back(near.object);
+    return animated;
+}
+
+void SoftBodyStep::pause(const BulletObstacles& obstacles) {
+    if (std::exchange(m_paused, true)) return;
+    m_box = boxAhead(m_shown, 0.0, m_reach);
+    m_at_pause = animatedNear(obstacles);
+}
+
+/// A character that went on without its cloth is not where it was; nor is one that was removed.
+void SoftBodyStep::resume(const BulletObstacles& obstacles) {
+    if (!std::exchange(m_paused, false) || m_at_pause.empty()) return;
+    const std::vector<const btCollisionObject*> now = animatedNear(obstacles);
+    m_result.left_behind =
+        std::none_of(m_at_pause.begin(), m_at_pause.end(), [&](const btCollisionObject* object) {
+            return std::find(now.begin(), now.end(), object) != now.end();
+        });
 }
 
 bool SoftBodyStep::isIndependent(const BulletObstacles& obstacles) const {

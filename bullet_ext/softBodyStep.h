@@ -83,6 +83,7 @@ class SoftBodyStep {
         bool without_goals = false;  ///< the garment has limits, and goals were never given
         int stretched_anchor = -1;   ///< node that an anchor holds farther than the cloth reaches
         int idle_anchor = -1;        ///< node of an anchor that does nothing, see linkAnchors()
+        bool left_behind = false;    ///< it was paused, and animated meshes at it went away
     };
     /// A world step of h seconds: takes over what the user changed, steps the cloth past the end of
     /// the world step and writes the nodes. Obstacles are looked for within `reach` (m):
@@ -164,6 +165,9 @@ class SoftBodyStep {
     void writeNodes();
     void measureDepth(BulletObstacles& obstacles);
     int stretchedAnchor() const;
+    std::vector<const btCollisionObject*> animatedNear(const BulletObstacles& obstacles) const;
+    void pause(const BulletObstacles& obstacles);
+    void resume(const BulletObstacles& obstacles);
 
     btSoftBody& m_body;
     std::unique_ptr<const Garment> m_garment;
@@ -180,13 +184,15 @@ class SoftBodyStep {
     bool m_continues = false;         ///< the present cloth step starts where the last one ended
     ClothSleep m_sleep;
     bool m_sliding_friction;
-    double m_time_scale = 1.0;    ///< time of the cloth over time of the world
-    double m_depth = 0.0;         ///< shownDepth()
-    double m_h = 0.0;             ///< the present world step, in the time of the cloth (s)
-    double m_world_h = 0.0;       ///< the same in the time of the world
-    double m_reach = 0.0;         ///< (m)
-    bool m_begun = false;         ///< the present world step steps the cloth
-    bool m_handed_over = false;   ///< in the present world step
+    double m_time_scale = 1.0;  ///< time of the cloth over time of the world
+    double m_depth = 0.0;       ///< shownDepth()
+    double m_h = 0.0;           ///< the present world step, in the time of the cloth (s)
+    double m_world_h = 0.0;     ///< the same in the time of the world
+    double m_reach = 0.0;       ///< (m)
+    bool m_begun = false;       ///< the present world step steps the cloth
+    bool m_paused = false;      ///< the last one did not, for want of time
+    std::vector<const btCollisionObject*> m_at_pause;  ///< animated meshes at it when that began
+    bool m_handed_over = false;                        ///< in the present world step
     Box m_box;                    ///< where obstacles of the world step are looked for
     Result m_result;              ///< of the present world step
     Box m_cloth_box;              ///< where those of the present cloth step are

@@ -11,7 +11,7 @@ namespace cloth {
 
 /// Wall time of one step by stage (ms).
 struct StageTimes {
-    double proximity = 0.0;  ///< nearest points on the obstacles
+    double proximity = 0.0;  ///< nearest points on the obstacles, and limbs that overlap
     double features = 0.0;   ///< building the network's input
     double solve = 0.0;      ///< network evaluation and solver iterations
     double contact = 0.0;    ///< contact projection, and the search for tunnelling

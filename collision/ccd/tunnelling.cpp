@@ -81,7 +81,7 @@ bool cross_face(const Vec3& p0, const Vec3& p1, const Corners& start, const Corn
 
 /// Of a mesh, of each face; null: it has none.
 const std::vector<std::uint8_t>* usable_limbs(const Obstacle& mesh) {
-    return has_limbs(mesh) ? mesh.limbs.get() : nullptr;
+    return !mesh.is_whole && has_limbs(mesh) ? mesh.limbs.get() : nullptr;
 }
 
 /// None where there are none, and for a place that is not on a face.

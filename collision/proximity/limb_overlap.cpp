@@ -33,25 +33,144 @@ LimbOverlap::LimbOverlap(const LimbOverlapSettings& settings,
     check_range("LimbOverlapSettings.layer_room", settings.layer_room, 0.0, 0.1);
 }
 
-/// Returns whether any obstacle has limbs; forgets everything when they are not those of the last
-/// step. Obstacles without limbs may come and go.
-bool LimbOverlap::learn_limbs(const Boundary& boundary) {
-    m_found.clear();
-    m_has_limbs.clear();
-    for (const Obstacle& obstacle : boundary.obstacles) {
-        m_has_limbs.push_back(has_limbs(obstacle));
-        if (m_has_limbs.back()) m_found.push_back(obstacle.limbs);
+/// Returns whether any obstacle has limbs that are told apart. What is remembered of obstacles that
+/// are still there stays; others may come and go.
+bool LimbOverlap::learn_limbs(const Boundary& boundary, const Points& x) {
+    find_skins(boundary);
+    m_others.clear();
+    if (!are_those_of_last_step()) {
+        for (const Skin& skin : m_found) m_others.push_back(skin.obstacle);
+        choose_character(boundary, x);
+        replace_skins(boundary);
     }
-    std::sort(m_found.begin(), m_found.end());
-    if (m_found != m_known) {
-        m_known = m_found;
-        m_joined.fill(0);
-        m_own.clear();
-        m_covered = 0;
-        for (size_t k = 0; k < boundary.obstacles.size(); ++k)
-            if (m_has_limbs[k]) add_joints(boundary.obstacles[k]);
-    }
+    m_known.swap(m_found);
+    m_is_known.assign(boundary.obstacles.size(), 0);
+    for (const Skin& skin : m_known) m_is_known[skin.obstacle] = 1;
+    m_others.erase(std::remove_if(m_others.begin(), m_others.end(),
+                                  [&](size_t k) { return m_is_known[k] != 0; }),
+                   m_others.end());
     return !m_known.empty();
+}
+
+void LimbOverlap::find_skins(const Boundary& boundary) {
+    m_found.clear();
+    for (size_t k = 0; k < boundary.obstacles.size(); ++k) {
+        const Obstacle& obstacle = boundary.obstacles[k];
+        if (obstacle.is_whole || !has_limbs(obstacle)) continue;
+        Skin skin;
+        skin.faces = obstacle.faces;
+        skin.limbs = obstacle.limbs;
+        skin.id = obstacle.id;
+        skin.obstacle = k;
+        for (const Skin& other : m_found) skin.occurrence += other.is_like(skin) ? 1 : 0;
+        m_found.push_back(std::move(skin));
+    }
+}
+
+/// Takes over what is known of the skins in m_found.
+bool LimbOverlap::are_those_of_last_step() {
+    size_t count = 0;
+    for (Skin& skin : m_found)
+        for (const Skin& known : m_known) {
+            if (!known.is(skin)) continue;
+            skin.numbers = known.numbers;
+            skin.is_known = true;
+            ++count;
+        }
+    return count == m_found.size() && count == m_known.size();
+}
+
+LimbSet LimbOverlap::shared_numbers() const {
+    LimbSet once = 0, twice = 0;
+    for (const Skin& skin : m_found) {
+        twice |= once & skin.numbers;
+        once |= skin.numbers;
+    }
+    return twice;
+}
+
+/// Leaves in m_found one of the skins that have a number in common: that of the vertices' own
+/// limbs, or else the one that most vertices are near, if any is.
+void LimbOverlap::choose_character(const Boundary& boundary, const Points& x) {
+    for (Skin& skin : m_found)
+        if (!skin.is_known)
+            for (const std::uint8_t limb : *skin.limbs) skin.numbers |= only(limb);
+    if (shared_numbers() == 0) return;
+    LimbSet owned = 0, taken = 0;
+    for (const LimbSet limb : m_own) owned |= limb;
+    const auto is_own = [&](const Skin& skin) {
+        return skin.is_known && (skin.numbers & owned) != 0;
+    };
+    for (const Skin& skin : m_found)
+        if (is_own(skin)) taken |= skin.numbers;
+    const auto is_another = [&](const Skin& skin) {
+        return !is_own(skin) && (skin.numbers & taken) != 0;
+    };
+    m_found.erase(std::remove_if(m_found.begin(), m_found.end(), is_another), m_found.end());
+    const LimbSet shared = shared_numbers();
+    if (shared == 0) return;
+    count_near(boundary, x);
+    std::stable_sort(m_found.begin(), m_found.end(),
+                     [](const Skin& a, const Skin& b) { return a.near > b.near; });
+    std::vector<Skin> chosen;
+    taken = 0;
+    for (Skin& skin : m_found) {
+        if ((skin.numbers & taken) != 0 || (skin.near == 0 && (skin.numbers & shared) != 0))
+            continue;
+        taken |= skin.numbers;
+        chosen.push_back(std::move(skin));
+    }
+    m_found.swap(chosen);
+}
+
+void LimbOverlap::count_near(const Boundary& boundary, const Points& x) {
+    m_proximity.query(x, boundary, m_near);
+    for (Skin& skin : m_found)
+        skin.near = static_cast<int>(std::count(m_near.obstacle.begin(), m_near.obstacle.end(),
+                                                static_cast<int>(skin.obstacle)));
+}
+
+/// Forgets the skins in m_known that are not in m_found any more, and learns the new ones.
+void LimbOverlap::replace_skins(const Boundary& boundary) {
+    LimbSet lost = 0;
+    bool any_stays = false;
+    for (const Skin& known : m_known) {
+        const bool stays = std::any_of(m_found.begin(), m_found.end(),
+                                       [&](const Skin& skin) { return skin.is(known); });
+        if (!stays) lost |= known.numbers;
+        any_stays = any_stays || stays;
+    }
+    forget(lost);
+    if (!any_stays) m_own.clear();
+    for (const Skin& skin : m_found)
+        if (!skin.is_known) add_joints(boundary.obstacles[skin.obstacle]);
+}
+
+void LimbOverlap::forget(LimbSet limbs) {
+    if (limbs == 0) return;
+    m_covered &= ~limbs;
+    for (size_t limb = 0; limb < max_limbs; ++limb)
+        if ((limbs & only(limb)) != 0) m_joined[limb] = 0;
+    for (size_t i = 0; i < m_own.size(); ++i) {
+        m_ignored[i] &= ~limbs;
+        if ((m_own[i] & limbs) != 0) m_own[i] = m_unjoined[i] = m_passed[i] = 0;
+    }
+}
+
+/// The boundary as it is for the limbs: other characters must not hide them, nor be taken for them.
+const Boundary& LimbOverlap::without_others(const Boundary& boundary) {
+    m_has_limbs = m_is_known;
+    if (m_others.empty()) return boundary;
+    m_seen.trees = boundary.trees;
+    m_seen.obstacles.resize(boundary.obstacles.size() - m_others.size());
+    size_t seen = 0;
+    for (size_t k = 0; k < boundary.obstacles.size(); ++k) {
+        if (std::binary_search(m_others.begin(), m_others.end(), k)) continue;
+        m_seen.obstacles[seen] = boundary.obstacles[k];
+        m_has_limbs[seen++] = m_is_known[k];
+    }
+    m_has_limbs.resize(seen);
+    return m_seen;
 }
 
 /// Limbs are joined where their faces share a vertex.
@@ -298,14 +417,10 @@ void LimbOverlap::ignore_folded(const Boundary& boundary, const Points& x, StepE
     }
 }
 
-const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
-    if (!learn_limbs(boundary)) {
-        m_ignored.clear();
-        return boundary;
-    }
+/// Returns whether there is anything to tell. @param boundary  without_others()
+bool LimbOverlap::find_ignored(const Boundary& boundary, double dt, const ClothState& state) {
     find_own_limbs(boundary, state.x);
     std::fill(m_pinched.begin(), m_pinched.end(), 0);
-    m_overlapped = boundary.overlapped;
     if (marks_overlapped()) m_overlapped.resize(m_own.size(), 0);
     m_x = state.x + dt * state.v;
     m_boxes.fit(boundary, m_has_limbs, StepEnd::start);
@@ -320,9 +435,21 @@ const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const C
     ignore_covered();
     mark_overlapped(boundary, m_x, StepEnd::end);
     const auto is_marked = [](char mark) { return mark != 0; };
-    if (ignores_nothing() && std::none_of(m_overlapped.begin(), m_overlapped.end(), is_marked))
+    return !ignores_nothing() || std::any_of(m_overlapped.begin(), m_overlapped.end(), is_marked);
+}
+
+const Boundary& LimbOverlap::filter(const Boundary& boundary, double dt, const ClothState& state) {
+    if (!learn_limbs(boundary, state.x)) {
+        m_own.clear();
+        m_ignored.clear();
         return boundary;
+    }
+    m_overlapped = boundary.overlapped;
+    if (!find_ignored(without_others(boundary), dt, state)) return boundary;
     m_boundary = boundary;
+    for (size_t k = 0; k < m_is_known.size(); ++k)
+        if (m_boundary.obstacles[k].shape == ObstacleShape::mesh && !m_is_known[k])
+            m_boundary.obstacles[k].is_whole = true;
     m_boundary.overlapped = m_overlapped;
     m_boundary.ignored_limbs = m_ignored;
     m_boundary.pinched = m_pinched;
@@ -386,7 +513,9 @@ void LimbOverlap::mark_squeezed(const Boundary& boundary, const Points& x, StepE
 IgnoredDepth LimbOverlap::measure_ignored(const Points& x, const std::vector<char>& left_out) {
     if (ignores_nothing() || static_cast<size_t>(x.rows()) != m_ignored.size()) return {};
     // Of several obstacles the deepest answers: the others must not hide the limbs.
-    const auto other = [](const Obstacle& obstacle) { return !has_limbs(obstacle); };
+    const auto other = [](const Obstacle& obstacle) {
+        return obstacle.is_whole || !has_limbs(obstacle);
+    };
     std::vector<Obstacle>& obstacles = m_boundary.obstacles;
     obstacles.erase(std::remove_if(obstacles.begin(), obstacles.end(), other), obstacles.end());
     m_has_limbs.assign(obstacles.size(), 1);

@@ -49,8 +49,13 @@ struct IgnoredDepth {
 ///     LimbOverlap limbs;
 ///     const Boundary& outside = limbs.filter(boundary, dt, state);  // in every step
 ///
-/// Costs nothing where no obstacle has limbs. Limbs of several obstacles are told apart by their
-/// numbers only. What it decides depends on the steps before.
+/// Obstacles with limbs of different numbers, such as a body and its hands, are one character. Of
+/// several that have a number in common, cloth keeps to the one that its vertices belong to, or
+/// that most of them are near. The others are other characters: they are touched everywhere
+/// (Obstacle::is_whole), and what they do nearby changes nothing for the limbs of the first.
+///
+/// Costs nothing where no obstacle has limbs. What it decides depends on the steps before, as long
+/// as the character stays near.
 class LimbOverlap {
  public:
     /// @param trees     see Proximity
@@ -78,9 +83,35 @@ class LimbOverlap {
     const std::vector<LimbSet>& ignored() const { return m_ignored; }
 
  private:
-    using Limbs = std::shared_ptr<const std::vector<std::uint8_t>>;
+    /// An obstacle with limbs. The pointers are held, so that they stay keys.
+    struct Skin {
+        std::shared_ptr<const Faces> faces;
+        std::shared_ptr<const std::vector<std::uint8_t>> limbs;
+        int id = 0;             ///< Obstacle::id
+        int occurrence = 0;     ///< among those that are alike in all of this
+        size_t obstacle = 0;    ///< in the boundary of this step
+        LimbSet numbers = 0;    ///< of its limbs
+        bool is_known = false;  ///< it was told apart in the last step
+        int near = 0;           ///< vertices, where that was asked for
 
-    bool learn_limbs(const Boundary& boundary);
+        bool is_like(const Skin& other) const {
+            return id == other.id && faces == other.faces && limbs == other.limbs;
+        }
+        bool is(const Skin& other) const {
+            return is_like(other) && occurrence == other.occurrence;
+        }
+    };
+
+    bool learn_limbs(const Boundary& boundary, const Points& x);
+    void find_skins(const Boundary& boundary);
+    bool are_those_of_last_step();
+    void choose_character(const Boundary& boundary, const Points& x);
+    void count_near(const Boundary& boundary, const Points& x);
+    LimbSet shared_numbers() const;
+    void replace_skins(const Boundary& boundary);
+    void forget(LimbSet limbs);
+    const Boundary& without_others(const Boundary& boundary);
+    bool find_ignored(const Boundary& boundary, double dt, const ClothState& state);
     void add_joints(const Obstacle& obstacle);
     void find_own_limbs(const Boundary& boundary, const Points& x);
     void release(const Boundary& boundary, const Points& x0, const Points& x1);
@@ -112,11 +143,15 @@ class LimbOverlap {
     LimbOverlapSettings m_settings;
     Proximity m_proximity;
     // Searches begin at the faces found last, so each kind has its own.
-    Proximity m_own_proximity;            ///< of own limbs
-    Proximity m_other_proximity;          ///< of the nearest limb that is not joined to the own one
-    Proximity* m_searches;                ///< used instead of m_own_proximity at the start; or null
-    std::vector<char> m_has_limbs;        ///< each obstacle of the last step
-    std::vector<Limbs> m_known, m_found;  ///< of the obstacles in the last step
+    Proximity m_own_proximity;      ///< of own limbs
+    Proximity m_other_proximity;    ///< of the nearest limb that is not joined to the own one
+    Proximity* m_searches;          ///< used instead of m_own_proximity at the start; or null
+    std::vector<char> m_has_limbs;  ///< each obstacle that is looked at; see without_others()
+    std::vector<char> m_is_known;   ///< each obstacle of the last step: of the character
+    std::vector<Skin> m_known;      ///< of the character in the last step
+    std::vector<Skin> m_found;      ///< scratch memory
+    std::vector<size_t> m_others;   ///< obstacles that are other characters, ascending
+    Boundary m_seen;                ///< without them, if there are any
     std::array<LimbSet, max_limbs> m_joined = {};  ///< to each limb, itself among them
     LimbBoxes m_boxes;                             ///< at the end that is looked at
     LimbSet m_covered = 0;

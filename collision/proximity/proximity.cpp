@@ -89,6 +89,9 @@ struct Target {
     Vec3 centre = Vec3::Zero();        // of that frame (m)
     double reach = 0.0;                // see reach_of_primitive()
 
+    /// Of the limbs that a row ignores, those that it ignores here.
+    LimbSet ignored_here(LimbSet ignored) const { return obstacle->is_whole ? 0 : ignored; }
+
     /// Whether it is surely farther from x than `distance` (m).
     bool is_beyond(const Vec3& x, double distance) const {
         constexpr double rounding = 1.0 + 1e-5;  // frames are turned as exactly as floats are
@@ -126,9 +129,10 @@ class SearchTogether {
     SearchTogether(const Target& target, ClosestFaceTree::Stack& stack)
         : m_target(target), m_stack(stack) {}
 
-    void add(const Vec3& x, size_t point, double radius, LimbSet ignored) {
+    void add(const Vec3& x, size_t point, double radius, LimbSet limbs) {
         const Answer& answer = m_target.answers->of[point];
-        if (!x.allFinite() || (m_target.obstacle->solid & ignored) != 0 ||
+        const LimbSet ignored = m_target.ignored_here(limbs);
+        if (!x.allFinite() || (m_target.obstacle->solid & limbs) != 0 ||
             (answer.pose == m_target.answers->pose && answer.is_to(x, radius, ignored)))
             return;
         m_points[m_count] = point;

@@ -10,7 +10,9 @@ namespace cloth {
 
 /// Copies of one tree, each fitted to a state of its own (a pose, or a motion between two). What
 /// was handed out stays as it is while it is held; what nobody holds is fitted anew, so that a step
-/// allocates nothing. One thread at a time may call it; holders let go in any thread.
+/// allocates nothing. As many are kept as the last step used, but no fewer than 16 and no more than
+/// 256, so that several bodies of one mesh do not take each other's. One thread at a time may call
+/// it; holders let go in any thread.
 template <class Tree>
 class TreeFits {
  public:
@@ -21,6 +23,7 @@ class TreeFits {
     Held find(long step, const Matches& matches) {
         for (auto fit = m_fits.begin(); fit != m_fits.end(); ++fit) {
             if (!matches(*fit->tree)) continue;
+            if (fit->last_step != step) count_use(step);
             fit->last_step = step;
             std::rotate(fit, fit + 1, m_fits.end());
             return m_fits.back().tree;
@@ -45,8 +48,8 @@ class TreeFits {
 
     /// A tree to be fitted and added; null: there is none yet, build it.
     std::unique_ptr<Tree> take(long step) {
-        while (m_fits.size() > 1 &&
-               (m_fits.front().last_step < step - 1 || m_fits.size() >= most_fits))
+        const size_t most = std::clamp(used_before(step), least_fits, most_fits);
+        while (m_fits.size() > 1 && (m_fits.front().last_step < step - 1 || m_fits.size() >= most))
             m_fits.erase(m_fits.begin());
         if (std::unique_ptr<Tree> spare = m_spares->take()) return spare;
         return copy();
@@ -56,12 +59,27 @@ class TreeFits {
         const auto give_back = [spares = m_spares](Tree* done) {
             spares->put(std::unique_ptr<Tree>(done));
         };
+        count_use(step);
         m_fits.push_back({std::shared_ptr<Tree>(tree.release(), give_back), step});
         return m_fits.back().tree;
     }
 
  private:
-    static constexpr size_t most_fits = 16, most_spares = 2;
+    static constexpr size_t least_fits = 16, most_fits = 256, most_spares = 2;
+
+    /// Fits that were used in the step before this one.
+    size_t used_before(long step) const {
+        return step == m_step ? m_used_before : step == m_step + 1 ? m_used : 0;
+    }
+
+    void count_use(long step) {
+        if (step != m_step) {
+            m_used_before = used_before(step);
+            m_used = 0;
+            m_step = step;
+        }
+        ++m_used;
+    }
 
     struct Fit {
         Held tree;
@@ -97,7 +115,10 @@ class TreeFits {
         std::vector<std::unique_ptr<Tree>> m_trees;
     };
 
-    std::vector<Fit> m_fits;  ///< the one that was used last comes last
+    std::vector<Fit> m_fits;   ///< the one that was used last comes last
+    long m_step = 0;           ///< in which one was used last
+    size_t m_used = 0;         ///< in that step
+    size_t m_used_before = 0;  ///< in the one before it
     std::shared_ptr<Spares> m_spares = std::make_shared<Spares>();
 };
 

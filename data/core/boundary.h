@@ -29,6 +29,12 @@ struct Obstacle {
     /// Mesh: limb of each face (|F|, 0 to 31), the same pointer for life; null: the mesh is one
     /// body. Cloth passes through limbs that are inside other limbs, see LimbOverlap.
     std::shared_ptr<const std::vector<std::uint8_t>> limbs;
+    /// Mesh with limbs: tells it from other obstacles of the same mesh in every step. 0: its place
+    /// among them in Boundary::obstacles does.
+    int id = 0;
+    /// Mesh: vertices touch all of it, whatever limbs they ignore. LimbOverlap sets it for other
+    /// characters than the one that cloth belongs to.
+    bool is_whole = false;
     /// Bit of the whole obstacle, as if it were a limb: vertices that ignore it do not touch the
     /// obstacle. 0: all touch it. To be told apart from limbs of other obstacles.
     LimbSet solid = 0;

@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "bullet_ext/btGnnSoftBodySolver.h"
 #include "bullet_ext/garmentSoftBody.h"
@@ -528,6 +532,68 @@ TEST(GnnSolver, SettingsOfABodyThatLeftAreNotThoseOfTheNextAtItsAddress) {
     EXPECT_EQ(node(*cloth, 0).y(), y) << "what is asked of it before its first step counts";
 }
 
+TEST(GnnSolver, SettingsOfABodyThatLeftBeforeItsFirstStepAreNotThoseOfTheNext) {
+    btGnnSoftBodySolver solver(free_fall());
+    World world(&solver);
+    const std::vector<std::function<void(btSoftBody*)>> settings = {
+        [&](btSoftBody* body) { solver.setDetail(body, btGnnDetail::offScreen()); },
+        [&](btSoftBody* body) {
+            solver.attach(body);
+            solver.setDetail(body, btGnnDetail::offScreen());
+        },
+        [&](btSoftBody* body) {
+            solver.setDetail(body, btGnnDetail::offScreen());
+            solver.attach(body, Fabric::soft_cotton());
+        },
+        [&](btSoftBody* body) {
+            solver.setDetail(body, btGnnDetail::offScreen());
+            solver.setInertia(body, 0.5, 0.5);
+        }};
+    for (const auto& set : settings) {
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 5, 0}));
+        set(cloth);
+        world->removeSoftBody(cloth);
+        world->addSoftBody(cloth);  // as another one at its address
+        world.step(1.0 / 60.0, 3);
+        EXPECT_NEAR(fastest_node(*cloth), 9.81 * 3 / 60, 1e-4) << "it is stepped";
+        world.remove(cloth);
+    }
+}
+
+/// A level quad, in the memory of another body.
+btSoftBody* quad_at(btSoftBody* memory, btSoftBodyWorldInfo& info) {
+    memory->~btSoftBody();
+    const btVector3 x[] = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}, {1, 0, 1}};
+    const btScalar masses[] = {1, 1, 1, 1};
+    auto* quad = new (memory) btSoftBody(&info, 4, x, masses);
+    quad->appendFace(0, 2, 1);
+    quad->appendFace(1, 2, 3);
+    return quad;
+}
+
+TEST(GnnSolver, SettingsOfABodyThatNeverWasInAWorldAreForOneOfItsSize) {
+    const auto speed_of_next = [](bool same_size, bool forgotten, bool detached) {
+        btGnnSoftBodySolver solver(free_fall());
+        World world(&solver);
+        btSoftBody* body = patch(world.info(), {0, 0, 0});
+        if (same_size) body = quad_at(body, world.info());
+        solver.attach(body);
+        solver.setDetail(body, btGnnDetail::offScreen());
+        if (detached) solver.detach(body);
+        if (forgotten) solver.forget(body);
+        body = world.add(quad_at(body, world.info()));
+        world.step(1.0 / 60.0, 3);
+        EXPECT_EQ(solver.status().bulletBodies, 0);
+        return fastest_node(*body);
+    };
+    constexpr double fall = 9.81 * 3 / 60;
+    EXPECT_NEAR(speed_of_next(false, false, false), fall, 1e-4);
+    EXPECT_NEAR(speed_of_next(false, false, true), fall, 1e-4);
+    EXPECT_EQ(speed_of_next(true, false, false), 0.0) << "it may be the same body";
+    EXPECT_NEAR(speed_of_next(true, true, false), fall, 1e-4);
+    EXPECT_NEAR(speed_of_next(true, true, true), fall, 1e-4);
+}
+
 TEST(GnnSolver, ClothThatIsPutElsewhereIsNotDraggedThereByItsPins) {
     for (const auto& fabric : {Fabric::soft_cotton(), Fabric::real_cotton()}) {
         btGnnSoftBodySolver solver(
@@ -566,6 +632,90 @@ TEST(GnnSolver, TimescaleStretchesTheClothsTimeOnly) {
     cloth->m_cfg.timescale = 0;  // paused
     world.step(1.0 / 60.0, 5);
     EXPECT_EQ(node(*cloth, 0).y(), y);
+}
+
+bool tells(const btGnnSoftBodySolver& solver, const std::string& part) {
+    const auto& messages = solver.status().messages;
+    return std::any_of(messages.begin(), messages.end(), [&](const btGnnSolverMessage& message) {
+        return message.text.find(part) != std::string::npos;
+    });
+}
+
+TEST(GnnSolver, ATimescaleThatIsNoneIsTold) {
+    for (const float scale : {-1.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f, 2.0f}) {
+        btGnnSoftBodySolver solver(free_fall());
+        World world(&solver);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        cloth->m_cfg.timescale = scale;
+        world.step(1.0 / 60.0);
+        EXPECT_EQ(tells(solver, "timescale is negative or no number"), !(scale >= 0.0f)) << scale;
+        EXPECT_EQ(fastest_node(*cloth) > 0.0, scale > 0.0f) << scale;
+    }
+}
+
+TEST(GnnSolver, ClothThatWasPausedAndLeftBehindIsTold) {
+    constexpr double h = 1.0 / 60.0;
+    const auto is_told = [](double speed, bool follows) {
+        btGnnSoftBodySolver solver(free_fall());
+        World world(&solver);
+        btRigidBody* character = world.add(new btSphereShape(0.3f), {0, 0, 0}, true);
+        btSoftBody* cloth = world.add(patch(world.info(), {0, 0, 0}));
+        TriMesh ball = icosphere(2);
+        ball.vertices *= 0.3;
+        const auto faces = std::make_shared<const Faces>(ball.faces);
+        Points x = ball.vertices;
+        for (int step = 0; step < 12; ++step) {
+            const Points before = x;
+            if (step > 0) x.col(0).array() += speed * h;
+            solver.setAnimatedObstacle(character, faces, before, x, h);
+            cloth->m_cfg.timescale = step > 0 && step < 10 ? 0.0f : 1.0f;
+            if (step == 10 && follows)
+                solver.teleport(cloth, btTransform(btQuaternion::getIdentity(),
+                                                   {static_cast<btScalar>(x(0, 0)), 0, 0}));
+            world.step(h);
+            EXPECT_EQ(tells(solver, "goes on alone"), step >= 10 && speed > 1.0 && !follows);
+        }
+        return tells(solver, "goes on alone");
+    };
+    EXPECT_TRUE(is_told(12.0, false));
+    EXPECT_FALSE(is_told(12.0, true));
+    EXPECT_FALSE(is_told(0.1, false));
+}
+
+TEST(GnnSolver, AnimatedObstaclesOfOneMeshAreToldApartInEveryStep) {
+    constexpr double h = 1.0 / 60.0;
+    auto log = std::make_shared<FreeFall::Log>();
+    btGnnSoftBodySolver solver(free_fall(log));
+    World world(&solver);
+    btRigidBody* one = world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
+    btRigidBody* two = world.add(new btSphereShape(0.1f), {0, 0, 0}, true);
+    world.add(patch(world.info(), {0, 0, 0}));
+    TriMesh ball = icosphere(1);
+    ball.vertices *= 0.1;
+    const auto faces = std::make_shared<const Faces>(ball.faces);
+    const auto at = [&](double x) -> Points {
+        return ball.vertices.rowwise() + Eigen::RowVector3d(x, 0, 0);
+    };
+    const auto step = [&](double from, double to) {  // of the first; the other one comes towards it
+        solver.setAnimatedObstacle(one, faces, at(from), at(to), h);
+        solver.setAnimatedObstacle(two, faces, at(-from), at(-to), h);
+        world.step(h);
+        std::vector<std::pair<double, int>> seen;  // place and number
+        for (const Obstacle& obstacle : log->boundaries.back().obstacles)
+            seen.emplace_back(obstacle.x1.col(0).mean(), obstacle.id);
+        std::sort(seen.begin(), seen.end());
+        EXPECT_EQ(seen.size(), 2u);
+        return seen;
+    };
+    const auto before = step(-0.1, -0.05), after = step(-0.05, 0.05);
+    EXPECT_NE(before[0].second, 0);
+    EXPECT_NE(before[0].second, before[1].second);
+    EXPECT_EQ(before[0].second, after[1].second);
+    EXPECT_EQ(before[1].second, after[0].second);
+    solver.removeAnimatedObstacle(one);
+    const auto anew = step(0.05, 0.05);
+    EXPECT_EQ(anew[0].second, after[0].second);
+    EXPECT_NE(anew[1].second, after[1].second);
 }
 
 TEST(GnnSolver, ChangesFromATickCallbackDoNoHarm) {

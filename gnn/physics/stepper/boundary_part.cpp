@@ -18,6 +18,8 @@ void cut(const Obstacle& whole, double s0, double s1, Obstacle& part) {
     part.shape = whole.shape;
     part.faces = whole.faces;
     part.limbs = whole.limbs;
+    part.id = whole.id;
+    part.is_whole = whole.is_whole;
     part.solid = whole.solid;
     part.half_extents = whole.half_extents;
     part.radius = whole.radius;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "collision/proximity/obstacle_trees.h"
+#include "collision/proximity/proximity.h"
 #include "data/core/errors.h"
 #include "tests/two_limbs.h"
 
@@ -315,6 +316,121 @@ TEST(LimbOverlap, OtherObstaclesMayComeAndGo) {
                           primitive(ObstacleShape::sphere, Vec3::Zero(), 0.01));
     EXPECT_EQ(ignoring(limbs.filter(more, dt, state), arm), state.x.rows());
     EXPECT_EQ(ignoring(LimbOverlap().filter(more, dt, state), arm), 0);
+}
+
+Obstacle shifted(Obstacle body, const Vec3& by, int id) {
+    for (Points* x : {&body.x0, &body.x1}) x->rowwise() += by.transpose();
+    body.id = id;
+    return body;
+}
+
+TEST(LimbOverlap, ACharacterThatPassesByChangesNothing) {
+    const TwoLimbs body(false), another(false);
+    const ClothState state = shell();
+    const std::vector<double> way = {0.3, 0.24, 0.17, 0.17, 0.205, 0.205, 0.205, 0.205, 0.24, 0.24};
+    for (const TwoLimbs* mesh : {&body, &another}) {
+        LimbOverlap alone, passed;
+        int ignored = 0;
+        for (size_t step = 0; step + 1 < way.size(); ++step) {
+            Boundary boundary = body.boundary(way[step], way[step + 1]);
+            ignored += ignoring(alone.filter(boundary, dt, state), arm) > 0;
+            boundary.obstacles[0].id = 1;
+            if (step % 3 != 0) {  // its arm is covered; it is 3 cm off the cloth
+                const Obstacle other =
+                    shifted(mesh->boundary(0.17, 0.16).obstacles[0], {0, 0.335, 0}, 2);
+                const auto front = boundary.obstacles.begin();
+                boundary.obstacles.insert(step % 2 ? front : front + 1, other);
+            }
+            passed.filter(boundary, dt, state);
+            EXPECT_EQ(passed.ignored(), alone.ignored()) << step;
+        }
+        EXPECT_GT(ignored, 5);
+    }
+}
+
+TEST(LimbOverlap, AnotherCharacterIsTouchedWhateverTheClothIgnores) {
+    const TwoLimbs body(false);
+    const ClothState state = shell();
+    LimbOverlap alone, limbs;
+    Boundary before = body.boundary(0.3, 0.3), boundary = body.boundary(0.17, 0.16);
+    before.obstacles[0].id = boundary.obstacles[0].id = 1;
+    alone.filter(before, dt, state);
+    limbs.filter(before, dt, state);
+    alone.filter(boundary, dt, state);
+    // its arm is over the cloth
+    boundary.obstacles.push_back(shifted(body.boundary(0.3, 0.3).obstacles[0], {-0.3, 0.21, 0}, 2));
+    const Boundary& outside = limbs.filter(boundary, dt, state);
+    ASSERT_EQ(ignoring(outside, arm), state.x.rows());
+    EXPECT_FALSE(outside.obstacles[0].is_whole);
+    EXPECT_TRUE(outside.obstacles[1].is_whole);
+    Eigen::Index top = 0;
+    state.x.col(1).maxCoeff(&top);
+    Points x = state.x;
+    x.row(top) << 0, 0.17, 0;
+    SurfaceContacts contacts;
+    Proximity().query(x, outside, contacts);
+    EXPECT_EQ(contacts.obstacle[size_t(top)], 1);
+    EXPECT_NEAR(contacts.distance[top], -0.01, 5e-4);
+    EXPECT_EQ(limbs.measure_ignored(x).depth, alone.measure_ignored(x).depth);
+}
+
+TEST(LimbOverlap, AThingWithoutLimbsIsTouchedWhateverTheClothIgnores) {
+    const TwoLimbs body(false);
+    LimbOverlap limbs;
+    limbs.filter(body.boundary(0.3, 0.3), dt, sleeve(0.3));
+    Boundary boundary = body.boundary(0.17, 0.17);
+    TriMesh ball = icosphere(3);
+    ball.vertices *= 0.05;
+    boundary.obstacles.push_back(shifted(mesh_obstacle(ball), {0.17, 0.11, 0}, 0));
+    ClothState state = sleeve(0.17);
+    const Boundary& outside = limbs.filter(boundary, dt, state);
+    ASSERT_EQ(ignoring(outside, trunk), state.x.rows());
+    state.x.row(0) << 0.17, 0.07, 0;
+    SurfaceContacts contacts;
+    Proximity().query(state.x, outside, contacts);
+    EXPECT_EQ(contacts.obstacle[0], 1);
+    EXPECT_NEAR(contacts.distance[0], -0.01, 5e-4);
+}
+
+TEST(LimbOverlap, OfEqualCharactersClothKeepsToTheOneThatItIsOn) {
+    const TwoLimbs body(false);
+    const ClothState state = shell();
+    LimbOverlap limbs;
+    for (const int step : {0, 1, 2}) {
+        Boundary boundary = step == 0 ? body.boundary(0.3, 0.3) : body.boundary(0.17, 0.17);
+        boundary.obstacles[0].id = 1;
+        const Obstacle other = shifted(boundary.obstacles[0], {0, 0.335, 0}, 2);
+        boundary.obstacles.insert(boundary.obstacles.begin() + step % 2, other);
+        const Boundary& outside = limbs.filter(boundary, dt, state);
+        EXPECT_EQ(ignoring(outside, arm), step > 0 ? state.x.rows() : 0);
+        if (step == 0) continue;
+        for (const Obstacle& obstacle : outside.obstacles)
+            EXPECT_EQ(obstacle.is_whole, obstacle.id == 2);
+    }
+    // it is gone: the other one is the cloth's now
+    const Boundary boundary =
+        boundary_of({shifted(body.boundary(0.4, 0.4).obstacles[0], {0, 0.335, 0}, 2)});
+    EXPECT_EQ(ignoring(limbs.filter(boundary, dt, state), arm), 0);
+    limbs.filter(body.boundary(0.3, 0.3), dt, state);
+    EXPECT_EQ(ignoring(limbs.filter(body.boundary(0.17, 0.17), dt, state), arm), state.x.rows());
+}
+
+TEST(LimbOverlap, LimbsOfOtherNumbersMayComeAndGo) {
+    const TwoLimbs body(false);
+    const TriMesh ball = icosphere(2);
+    Obstacle hat;
+    hat.faces = std::make_shared<const Faces>(ball.faces);
+    hat.limbs = std::make_shared<const std::vector<std::uint8_t>>(ball.faces.rows(), 2);
+    hat.x0 = hat.x1 = (0.05 * ball.vertices).rowwise() + Eigen::RowVector3d(0, 0.21, 0);
+    const ClothState state = shell();
+    LimbOverlap limbs;
+    limbs.filter(body.boundary(0.3, 0.3), dt, state);
+    limbs.filter(body.boundary(0.17, 0.17), dt, state);
+    for (const bool there : {true, true, false, true}) {
+        Boundary boundary = body.boundary(0.205, 0.205);
+        if (there) boundary.obstacles.insert(boundary.obstacles.begin(), hat);
+        EXPECT_EQ(ignoring(limbs.filter(boundary, dt, state), arm), state.x.rows());
+    }
 }
 
 int deeper_than(const Points& x, const Vec3& centre, double radius, double depth) {

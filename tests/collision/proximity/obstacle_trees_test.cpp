@@ -13,6 +13,7 @@
 #include "collision/ccd/tunnelling.h"
 #include "collision/geometry/motion_tree.h"
 #include "collision/proximity/mesh_surface.h"
+#include "collision/proximity/tree_fits.h"
 #include "data/authoring/sheet.h"
 #include "data/core/errors.h"
 #include "tests/collision/proximity/same_bits.h"
@@ -382,6 +383,62 @@ TEST(ObstacleTrees, OneMeshMayStandInAWorldTwice) {
         EXPECT_EQ(trees->counts().builds, 1);
         EXPECT_EQ(trees->counts().surface_fits, 2);
     }
+}
+
+TEST(ObstacleTrees, BodiesOfOneMeshCostOneFitEachHoweverManyTheyAre) {
+    const RoughBody body;
+    const Points x = Points::Constant(1, 3, 0.8);
+    for (const int count : {8, 9, 20}) {
+        const auto trees = std::make_shared<ObstacleTrees>();
+        Proximity shirt({0.4, 0}), skirt({0.4, 0});
+        long before = 0;
+        for (int step = 0; step < 6; ++step) {
+            trees->begin_step();
+            Boundary boundary;
+            for (int k = 0; k < count; ++k)
+                boundary.obstacles.push_back(body.between(100 * k + step, 100 * k + step + 1));
+            boundary.trees = trees;
+            Answers(shirt, boundary, x), Answers(skirt, boundary, x);
+            if (step > 2) {
+                EXPECT_EQ(trees->counts().surface_fits - before, count) << step;
+            }
+            before = trees->counts().surface_fits;
+        }
+    }
+}
+
+/// Trees that exist at present.
+struct Counted {
+    explicit Counted(int pose_of) : pose(pose_of) { ++alive; }
+    Counted(const Counted& other) : pose(other.pose) { ++alive; }
+    Counted& operator=(const Counted&) = default;
+    ~Counted() { --alive; }
+    int pose;
+    inline static int alive = 0;
+};
+
+TEST(TreeFits, AreNoMoreThanTheLastStepUsed) {
+    TreeFits<Counted> fits;
+    const auto use = [&](long step, int poses) {
+        for (int k = 0; k < poses; ++k) {
+            const int pose = static_cast<int>(1000 * step) + k;
+            auto tree = fits.take(step);
+            if (!tree) tree = std::make_unique<Counted>(pose);
+            tree->pose = pose;
+            fits.add(step, std::move(tree));
+        }
+    };
+    constexpr int spares = 2;
+    use(1, 40);
+    EXPECT_LE(Counted::alive, 16 + spares);
+    for (const long step : {2L, 3L}) use(step, 40);
+    EXPECT_GE(Counted::alive, 40);
+    EXPECT_LE(Counted::alive, 40 + spares);
+    use(4, 2000);
+    use(5, 2000);
+    EXPECT_LE(Counted::alive, 256 + spares);
+    for (const long step : {6L, 7L, 8L}) use(step, 3);
+    EXPECT_LE(Counted::alive, 6 + spares);
 }
 
 TEST(ObstacleTrees, MeshesAreForgottenWhenNotShown) {

@@ -663,6 +663,17 @@ TEST_F(Guard, TellsHowDeepTheGarmentIsInLimbsThatItIgnores) {
     EXPECT_EQ(shifted(-0.03).vertices_in_ignored_limbs, 0);
 }
 
+TEST_F(Guard, TheTimeThatLimbsTakeIsThatOfProximity) {
+    m_boundary.obstacles = {two_skins(1.2)};
+    const auto proximity_ms = [&](GuardSettings guard) {
+        guard.max_substeps = 1;
+        ClothStepper stepper(m_garment, std::make_unique<Flying>(m_garment, Vec3::Zero()), guard);
+        return stepper.step(m_boundary, dt, m_state).times.proximity;
+    };
+    EXPECT_GT(proximity_ms({}), 0.0);
+    EXPECT_EQ(proximity_ms(GuardSettings::off()), 0.0) << "the solver takes none";
+}
+
 TEST_F(Guard, AnImpossibleStepStillFailsAndChangesNothing) {
     ClothStepper stepper(m_garment, guarded());
     const ClothState before = m_state;
