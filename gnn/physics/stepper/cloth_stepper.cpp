@@ -306,20 +306,25 @@ StepReport ClothStepper::take_parts(int substeps, const Boundary& boundary, doub
     return report;
 }
 
-/// A step goes on from the velocity at the end of the last part. Of a constant acceleration a, that
-/// of N parts is faster than their mean by (N - 1) / 2N a dt. Steps of one length and other numbers
-/// of parts go on from where their means do. Whole steps that were cut for their motion alone go on
-/// without where the number changes: what is lost damps what moves so fast.
+/// Of a constant acceleration a, the last of N parts ends faster than their mean by (N - 1) / 2N a
+/// dt. A step of another length goes on from there; if it is far shorter than these parts, it would
+/// show what rings in them, and goes on from nearer to the mean. Steps of one length and other
+/// numbers of parts go on from where their means do; but whole steps that were cut for their motion
+/// alone go on without: what is lost damps what moves so fast.
 void ClothStepper::add_lag(int parts, double dt, ClothState& state) const {
+    constexpr double same = 1e-3, far_shorter = 0.25;
     const auto share = [](int count) { return static_cast<double>(count - 1) / count; };
     for (const Lag* lag : {&m_lag, &m_lag_before}) {
         if (lag->parts < 2 || !same_points(lag->x, state.x)) continue;
         const bool may_differ = m_solver->settings().small_step_rate > 0.0 && m_substeps == 1;
+        const bool is_as_long = std::abs(dt - lag->dt) < same * dt;
         if (lag->parts != parts && !may_differ) return;
-        if (lag->parts != parts && parts > 1 && lag->dt == dt)
+        if (lag->parts == parts)
+            state.v += lag->v;
+        else if (is_as_long)
             state.v += share(parts) / share(lag->parts) * lag->v;
         else
-            state.v += lag->v;
+            state.v += std::min(1.0, dt * lag->parts / (far_shorter * lag->dt)) * lag->v;
         return;
     }
 }

@@ -18,12 +18,15 @@ namespace {
 constexpr int kRate = 60, kSteps = 6 * kRate;
 
 /// Part of the steps in which the first cloth of a scene moved, without the velocities for it.
-double creeping_share(const SceneRecipe& recipe) {
+/// @param aside  how far its cloth starts from where the scene says (m)
+double creeping_share(const SceneRecipe& recipe, double aside) {
     constexpr double kMoves = 0.02;  // m/s
     omp_set_num_threads(1);          // small sheets; other tests run beside this one
     const auto solver = SceneSolvers().make("default", defaults_of(recipe));
     SceneWorld scene(solver.get());
     recipe.build(scene);
+    for (btSoftBody* sheet : scene.cloth())
+        sheet->translate({static_cast<btScalar>(aside), 0, static_cast<btScalar>(0.5 * aside)});
     const btSoftBody& cloth = *scene.cloth().front();
     int creeps = 0;
     for (int step = 0; step < kSteps; ++step) {
@@ -53,7 +56,11 @@ std::string name_of(const testing::TestParamInfo<SceneRecipe>& info) {
 TEST_P(Creep, ClothMovesAsItsVelocitiesSay) {
     // Energy that a heap makes is taken while it falls together.
     const bool is_heap = GetParam().name == std::string("Cloth");
-    EXPECT_LT(creeping_share(GetParam()), is_heap ? 0.2 : 0.05);
+    // Loose boxes under a sheet fall otherwise for every tenth of a millimetre.
+    const int starts = GetParam().name == std::string("stack") ? 8 : 1;
+    double share = 0.0;
+    for (int k = 0; k < starts; ++k) share += creeping_share(GetParam(), 1e-4 * k) / starts;
+    EXPECT_LT(share, is_heap ? 0.2 : 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Creep, testing::ValuesIn(scenes()), name_of);
