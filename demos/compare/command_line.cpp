@@ -13,24 +13,26 @@ void set_up(CLI::App& app) {
     app.get_formatter()->column_width(26);
 }
 
-CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
-                              int highest, const std::string& description) {
-    // CLI11 says of 2.5 that it is not in the range.
-    const auto check = [name, lowest, highest](const std::string& text) {
-        whole_number(name, text, lowest, highest);
+/// @param parse  throws UsageError; CLI11 says of 2.5 that it is not in a range, and takes NaN
+template <typename Number>
+CLI::Option* add_in_range(CLI::App& app, const std::string& name, Number& value, Number lowest,
+                          Number highest, const std::string& description,
+                          Number (*parse)(const std::string&, const std::string&, Number, Number)) {
+    const auto check = [=](const std::string& text) {
+        parse(name, text, lowest, highest);
         return std::string();
     };
     return app.add_option(name, value, description)->check(check)->type_name("N");
 }
 
+CLI::Option* add_whole_number(CLI::App& app, const std::string& name, int& value, int lowest,
+                              int highest, const std::string& description) {
+    return add_in_range(app, name, value, lowest, highest, description, whole_number);
+}
+
 CLI::Option* add_number(CLI::App& app, const std::string& name, double& value, double lowest,
                         double highest, const std::string& description) {
-    // NaN passes CLI::Range.
-    const auto check = [name, lowest, highest](const std::string& text) {
-        number_in_range(name, text, lowest, highest);
-        return std::string();
-    };
-    return app.add_option(name, value, description)->check(check)->type_name("N");
+    return add_in_range(app, name, value, lowest, highest, description, number_in_range);
 }
 
 CLI::Option* add_rate(CLI::App& app, int& rate) {

@@ -462,12 +462,14 @@ void StepSolver::let_fall(const Boundary& boundary, const SurfaceContacts& conta
     if (m_settings.minimiser != MinimiserKind::quasi_newton) return;
     if (!m_garment->pins().empty() || m_garment->has_goals()) return;
     const VectorX& masses = m_garment->masses();
-    const double mass = masses.sum(), dt2 = m_potential.inertial_dt() * m_potential.inertial_dt();
-    Vec3 moment = (masses.transpose() * (m_potential.inertial_target() - m_x)).transpose();
-    moment += dt2 * mass * boundary.gravity;
-    if (boundary.accelerations.rows() > 0)
-        moment += dt2 * (masses.transpose() * boundary.accelerations).transpose();
-    const Vec3 way = moment / mass;
+    const double dt2 = m_potential.inertial_dt() * m_potential.inertial_dt();
+    const bool is_pushed = boundary.accelerations.rows() > 0;
+    Vec3 moment = Vec3::Zero();
+    for (Eigen::Index i = 0; i < m_x.rows(); ++i) {
+        moment += masses[i] * (m_potential.inertial_target().row(i) - m_x.row(i)).transpose();
+        if (is_pushed) moment += masses[i] * dt2 * boundary.accelerations.row(i).transpose();
+    }
+    const Vec3 way = moment / masses.sum() + dt2 * boundary.gravity;
     if (is_clear_of(contacts, way.norm())) m_x.rowwise() += way.transpose();
 }
 

@@ -20,10 +20,10 @@ struct Spring {
 ///
 /// with A0, A1 the areas of the edge's faces and Y Young's modulus of the sheet (Van Gelder 1998,
 /// "Approximate simulation of elastic membranes by triangulated spring meshes"); without shear
-/// stiffness mu there is none. A lattice of
-/// equilateral triangles, k = sqrt(3)/2 Y, is isotropic and stretches under its own weight exactly
-/// like the fabric; in any mesh the mean of the stiffness over all directions is that lattice's. An
-/// irregular mesh gives way where its springs are out of balance: it hangs up to 10 % too far.
+/// stiffness mu there is none. A lattice of equilateral triangles, k = sqrt(3)/2 Y, is isotropic
+/// and stretches under its own weight exactly like the fabric; in any mesh the mean of the
+/// stiffness over all directions is that lattice's. An irregular mesh gives way where its springs
+/// are out of balance: it hangs up to 10 % too far.
 ///
 /// Springs know one constant only: their Poisson's ratio is 1/3 whatever the fabric's. For soft
 /// cotton (0.485) shear is 11 % too stiff, stretch without side contraction 14 % and equal stretch

@@ -242,20 +242,25 @@ TEST(LimbOverlap, AThinCoverIsContact) {
     EXPECT_EQ(ignoring_arm(0.1), 0);  // the arm lies 7 cm thick over the trunk's skin
 }
 
+/// Of 5 cm.
+Obstacle ball_of_limb_2(const Vec3& at) {
+    const TriMesh ball = icosphere(2);
+    Obstacle obstacle;
+    obstacle.faces = std::make_shared<const Faces>(ball.faces);
+    obstacle.limbs = std::make_shared<const std::vector<std::uint8_t>>(ball.faces.rows(), 2);
+    obstacle.x0 = obstacle.x1 = (0.05 * ball.vertices).rowwise() + at.transpose();
+    return obstacle;
+}
+
 /// A limb that folds into the one that it is joined to stays solid for other cloth.
 TEST(LimbOverlap, AFoldBuriesNoLimb) {
     const auto with_sleeve_on_another_limb = [](bool joined) {
         const TwoLimbs body(joined);
-        const TriMesh ball = icosphere(2);
-        Obstacle other;
-        other.faces = std::make_shared<const Faces>(ball.faces);
-        other.limbs = std::make_shared<const std::vector<std::uint8_t>>(ball.faces.rows(), 2);
-        other.x0 = other.x1 = (0.05 * ball.vertices).rowwise() + Eigen::RowVector3d(0.17, 0.135, 0);
         ClothState cloth = sleeve(0.17);
         cloth.x.col(1).array() += 0.135;
         LimbOverlap limbs;
         Boundary boundary = body.boundary(0.3, 0.12);
-        boundary.obstacles.push_back(other);
+        boundary.obstacles.push_back(ball_of_limb_2({0.17, 0.135, 0}));
         return ignoring(limbs.filter(boundary, dt, cloth), arm);
     };
     EXPECT_GT(with_sleeve_on_another_limb(false), 0);
@@ -417,11 +422,7 @@ TEST(LimbOverlap, OfEqualCharactersClothKeepsToTheOneThatItIsOn) {
 
 TEST(LimbOverlap, LimbsOfOtherNumbersMayComeAndGo) {
     const TwoLimbs body(false);
-    const TriMesh ball = icosphere(2);
-    Obstacle hat;
-    hat.faces = std::make_shared<const Faces>(ball.faces);
-    hat.limbs = std::make_shared<const std::vector<std::uint8_t>>(ball.faces.rows(), 2);
-    hat.x0 = hat.x1 = (0.05 * ball.vertices).rowwise() + Eigen::RowVector3d(0, 0.21, 0);
+    const Obstacle hat = ball_of_limb_2({0, 0.21, 0});
     const ClothState state = shell();
     LimbOverlap limbs;
     limbs.filter(body.boundary(0.3, 0.3), dt, state);
