@@ -23,6 +23,8 @@ cmake --build --preset "$preset"
 echo "== tests: $preset"
 selection=()
 jobs="$(nproc)"
+# Tests run side by side: a thread that spins while it waits for its team takes another test's core.
+export OMP_WAIT_POLICY="${OMP_WAIT_POLICY:-passive}"
 case "$preset" in
   asan)
     # Long runs through code that short tests run, too: the other presets have them.

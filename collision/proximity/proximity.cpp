@@ -203,12 +203,17 @@ void place_on_face(const Points& x, const Faces& faces, const SurfaceHit& hit, V
     if (triangle_normal(a, b, c, fresh)) normal = fresh;
 }
 
-void clear_row(SurfaceContacts& contacts, Eigen::Index i) {
+/// The row has no contact; what its other columns hold means nothing.
+void store_none(SurfaceContacts& contacts, Eigen::Index i) {
     contacts.obstacle[size_t(i)] = contacts.face[size_t(i)] = -1;
+    contacts.distance[i] = no_distance;
+}
+
+void clear_row(SurfaceContacts& contacts, Eigen::Index i) {
+    store_none(contacts, i);
     for (Points* rows : {&contacts.barycentric, &contacts.point0, &contacts.point1,
                          &contacts.normal0, &contacts.normal1})
         rows->row(i).setZero();
-    contacts.distance[i] = no_distance;
 }
 
 void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
@@ -461,7 +466,10 @@ void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const 
     if (rows.empty()) return;
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(x, &rows, boundary, limits, [&](int i, const Nearest& nearest) {
-        store_row(nearest, chosen_at, i, contacts);
+        if (nearest.distance <= limits.store_within)
+            return store_row(nearest, chosen_at, i, contacts);
+        contacts.clearance[i] = nearest.clearance;
+        store_none(contacts, i);
     });
 }
 

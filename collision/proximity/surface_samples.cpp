@@ -151,23 +151,25 @@ void SurfaceSamples::limit_search(int sample, const Boundary& boundary, double r
     m_radii[sample] = radius;
 }
 
-void SurfaceSamples::query_rows(Proximity& proximity, const Boundary& boundary) {
+void SurfaceSamples::query_rows(Proximity& proximity, const Boundary& boundary,
+                                double store_within) {
     QueryLimits limits;
+    limits.store_within = store_within;
     limits.ignored = &m_ignored;
     limits.radii = &m_radii;
     proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
 }
 
-/// Searches for the nearest points of samples that may be deep.
+/// Searches for the nearest points of samples that may be deeper than `depth` (m).
 template <class IsUnsure>
 void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundary, int first,
-                                   int last, const IsUnsure& is_unsure) {
+                                   int last, double depth, const IsUnsure& is_unsure) {
     select_rows(first, last, worth_threads, m_unsure, m_rows, [&](int sample) {
         const bool unsure = is_unsure(sample);
         if (unsure) limit_search(sample, boundary, beyond_doubt - m_distance[sample]);
         return unsure;
     });
-    query_rows(proximity, boundary);
+    query_rows(proximity, boundary, -depth);
     for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
 }
 
@@ -180,7 +182,7 @@ double SurfaceSamples::depth_beside(Proximity& proximity, const Boundary& bounda
         limit_search(sample, boundary, proximity.settings().radius);
         m_rows.push_back(sample);
     }
-    query_rows(proximity, boundary);
+    query_rows(proximity, boundary, proximity.settings().radius);
     double depth = 0.0;
     for (const int sample : m_rows)
         if (m_contacts.has(sample)) depth = std::max(depth, -m_contacts.distance[sample]);
@@ -206,8 +208,8 @@ void SurfaceSamples::find_deep(Proximity& proximity, const Boundary& boundary, c
             m_parted[k] ? -m_radius : vouched_by_vertices(sample, x, contacts.clearance);
         return m_distance[sample] < -depth;
     };
-    search_unsure(proximity, boundary, 0, face_count(), is_unsure);
-    search_unsure(proximity, boundary, face_count(), count(), [&](int sample) {
+    search_unsure(proximity, boundary, 0, face_count(), depth, is_unsure);
+    search_unsure(proximity, boundary, face_count(), count(), depth, [&](int sample) {
         if (!is_unsure(sample)) return false;
         if (m_parted[static_cast<size_t>(sample)]) return true;
         m_distance[sample] = std::max(m_distance[sample], vouched_by_faces(sample - face_count()));

@@ -71,9 +71,9 @@ class SurfaceSamples {
     int face_count() const { return static_cast<int>(m_faces.rows()); }
     template <class IsUnsure>
     void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last,
-                       const IsUnsure& is_unsure);
+                       double depth, const IsUnsure& is_unsure);
     void limit_search(int sample, const Boundary& boundary, double radius);
-    void query_rows(Proximity& proximity, const Boundary& boundary);
+    void query_rows(Proximity& proximity, const Boundary& boundary, double store_within);
     void find_clear(const Points& x, const SurfaceContacts& contacts);
     bool is_clear(int sample) const;
     bool has_changed(int sample, const std::vector<char>* changed) const;
