@@ -131,6 +131,35 @@ TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
     EXPECT_EQ(near.distance, all.distance) << "not beyond the settings' radius";
 }
 
+TEST(Limbs, QueriesStoreNoContactsFartherThanTheyAreTold) {
+    std::mt19937 random(17);
+    const Boundary boundary = boundary_of({mesh_obstacle(torus(40, 20, 0.8, 0.3)),
+                                           primitive(ObstacleShape::sphere, Vec3::Zero(), 0.3)});
+    const Points x = random_points(random, 1000, 1.1);
+    std::vector<int> rows(1000);
+    std::iota(rows.begin(), rows.end(), 0);
+    SurfaceContacts all, stored;
+    Proximity({0.4, 0}).query(x, boundary, all);
+    for (const double within : {-0.05, 0.0, 0.1}) {
+        QueryLimits limits;
+        limits.store_within = within;
+        stored = all;
+        Proximity({0.4, 0}).query_rows(x, rows, boundary, stored, StepEnd::start, limits);
+        EXPECT_EQ(stored.clearance, all.clearance);
+        int kept = 0;
+        for (const int i : rows) {
+            ASSERT_EQ(stored.has(i), all.has(i) && all.distance[i] <= within) << i;
+            if (!stored.has(i)) continue;
+            ++kept;
+            EXPECT_EQ(stored.distance[i], all.distance[i]);
+            EXPECT_EQ(stored.point0.row(i), all.point0.row(i));
+            EXPECT_EQ(stored.normal1.row(i), all.normal1.row(i));
+        }
+        EXPECT_GT(kept, 50);
+        EXPECT_LT(kept, 900);
+    }
+}
+
 TEST(Limbs, WhatWasAskedBeforeChangesNoAnswer) {
     std::mt19937 random(5);
     int found = 0;
