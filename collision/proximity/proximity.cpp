@@ -216,9 +216,10 @@ void clear_row(SurfaceContacts& contacts, Eigen::Index i) {
         rows->row(i).setZero();
 }
 
-void store_row(const Nearest& nearest, StepEnd chosen_at, Eigen::Index i,
+void store_row(const Nearest& nearest, StepEnd chosen_at, const QueryLimits& limits, Eigen::Index i,
                SurfaceContacts& contacts) {
     contacts.clearance[i] = nearest.clearance;
+    if (nearest.distance > limits.store_within) return store_none(contacts, i);
     if (!nearest.target) return clear_row(contacts, i);
     const Obstacle& obstacle = *nearest.target->obstacle;
     Vec3 point[2], normal[2];
@@ -456,7 +457,7 @@ void Proximity::query(const Points& x, const Boundary& boundary, SurfaceContacts
     resize(contacts, x.rows());
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(x, nullptr, boundary, limits, [&](int i, const Nearest& nearest) {
-        store_row(nearest, chosen_at, i, contacts);
+        store_row(nearest, chosen_at, limits, i, contacts);
     });
 }
 
@@ -466,10 +467,7 @@ void Proximity::query_rows(const Points& x, const std::vector<int>& rows, const 
     if (rows.empty()) return;
     m_impl->prepare(boundary, chosen_at, size_t(x.rows()));
     m_impl->for_each_nearest(x, &rows, boundary, limits, [&](int i, const Nearest& nearest) {
-        if (nearest.distance <= limits.store_within)
-            return store_row(nearest, chosen_at, i, contacts);
-        contacts.clearance[i] = nearest.clearance;
-        store_none(contacts, i);
+        store_row(nearest, chosen_at, limits, i, contacts);
     });
 }
 

@@ -57,8 +57,7 @@ struct QueryLimits {
     double radius = std::numeric_limits<double>::infinity();  ///< look no farther than this (m),
                                                               ///< nor than ProximitySettings
     const VectorX* radii = nullptr;  ///< the same for each row (m); null: one for all
-    /// Of query_rows(): rows that are farther than this (m, negative: inside) get a clearance and
-    /// no contact.
+    /// Rows that are farther than this (m, negative: inside) get a clearance and no contact.
     double store_within = std::numeric_limits<double>::infinity();
 };
 

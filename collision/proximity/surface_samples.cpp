@@ -151,10 +151,9 @@ void SurfaceSamples::limit_search(int sample, const Boundary& boundary, double r
     m_radii[sample] = radius;
 }
 
-void SurfaceSamples::query_rows(Proximity& proximity, const Boundary& boundary,
-                                double store_within) {
+void SurfaceSamples::query_rows(Proximity& proximity, const Boundary& boundary, double depth) {
     QueryLimits limits;
-    limits.store_within = store_within;
+    limits.store_within = -depth;
     limits.ignored = &m_ignored;
     limits.radii = &m_radii;
     proximity.query_rows(m_x, m_rows, boundary, m_contacts, StepEnd::end, limits);
@@ -169,7 +168,7 @@ void SurfaceSamples::search_unsure(Proximity& proximity, const Boundary& boundar
         if (unsure) limit_search(sample, boundary, beyond_doubt - m_distance[sample]);
         return unsure;
     });
-    query_rows(proximity, boundary, -depth);
+    query_rows(proximity, boundary, depth);
     for (const int sample : m_rows) m_distance[sample] = m_contacts.clearance[sample];
 }
 
@@ -182,7 +181,7 @@ double SurfaceSamples::depth_beside(Proximity& proximity, const Boundary& bounda
         limit_search(sample, boundary, proximity.settings().radius);
         m_rows.push_back(sample);
     }
-    query_rows(proximity, boundary, proximity.settings().radius);
+    query_rows(proximity, boundary, 0.0);
     double depth = 0.0;
     for (const int sample : m_rows)
         if (m_contacts.has(sample)) depth = std::max(depth, -m_contacts.distance[sample]);

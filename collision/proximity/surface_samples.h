@@ -36,14 +36,14 @@ class SurfaceSamples {
     /// Finds the samples deeper than `depth` (m) at t + dt.
     /// @param x         |V| x 3 (m)
     /// @param contacts  the vertices' nearest points, chosen at t + dt
-    /// @param changed   |V|: only samples of these vertices have changed since the last call; null:
-    ///                  all may have
+    /// @param changed   |V|: only samples of these vertices have changed since the last call, whose
+    ///                  `depth` was not larger; null: all may have
     void find_deep(Proximity& proximity, const Boundary& boundary, const Points& x,
                    const SurfaceContacts& contacts, double depth, const std::vector<char>* changed);
 
     /// How deep the samples of some vertices are at t + dt (m): the deepest of those that are
-    /// movable; 0: none is inside. Leaves deep() as it is, and positions and contacts of these
-    /// samples new.
+    /// movable; 0: none is inside. Leaves deep() as it is, and new positions of these samples
+    /// and contacts of those inside.
     /// @param changed  |V|: these vertices
     double depth_beside(Proximity& proximity, const Boundary& boundary, const Points& x,
                         const std::vector<char>& changed);
@@ -73,7 +73,7 @@ class SurfaceSamples {
     void search_unsure(Proximity& proximity, const Boundary& boundary, int first, int last,
                        double depth, const IsUnsure& is_unsure);
     void limit_search(int sample, const Boundary& boundary, double radius);
-    void query_rows(Proximity& proximity, const Boundary& boundary, double store_within);
+    void query_rows(Proximity& proximity, const Boundary& boundary, double depth);
     void find_clear(const Points& x, const SurfaceContacts& contacts);
     bool is_clear(int sample) const;
     bool has_changed(int sample, const std::vector<char>* changed) const;

@@ -28,6 +28,12 @@ Obstacle sliced(const TriMesh& mesh, int limbs) {
     return obstacle;
 }
 
+std::vector<int> numbers_up_to(int count) {
+    std::vector<int> numbers(static_cast<size_t>(count));
+    std::iota(numbers.begin(), numbers.end(), 0);
+    return numbers;
+}
+
 TriMesh without(const TriMesh& mesh, const std::vector<std::uint8_t>& limbs, LimbSet ignored) {
     TriMesh rest{mesh.vertices, Faces(mesh.faces.rows(), 3)};
     Eigen::Index count = 0;
@@ -101,8 +107,7 @@ TEST(Limbs, QueriesLookNoFartherThanTheyAreTold) {
     const Boundary boundary = boundary_of({mesh_obstacle(torus(40, 20, 0.8, 0.3)),
                                            primitive(ObstacleShape::sphere, Vec3::Zero(), 0.1)});
     const Points x = random_points(random, 2000, 1.3);
-    std::vector<int> rows(2000);
-    std::iota(rows.begin(), rows.end(), 0);
+    const std::vector<int> rows = numbers_up_to(2000);
     Proximity proximity({0.2, 0});
     SurfaceContacts all, near;
     proximity.query(x, boundary, all);
@@ -136,15 +141,18 @@ TEST(Limbs, QueriesStoreNoContactsFartherThanTheyAreTold) {
     const Boundary boundary = boundary_of({mesh_obstacle(torus(40, 20, 0.8, 0.3)),
                                            primitive(ObstacleShape::sphere, Vec3::Zero(), 0.3)});
     const Points x = random_points(random, 1000, 1.1);
-    std::vector<int> rows(1000);
-    std::iota(rows.begin(), rows.end(), 0);
+    const std::vector<int> rows = numbers_up_to(1000);
     SurfaceContacts all, stored;
     Proximity({0.4, 0}).query(x, boundary, all);
-    for (const double within : {-0.05, 0.0, 0.1}) {
+    for (const auto& [within, all_rows] : {std::pair(-0.05, false), std::pair(0.0, false),
+                                           std::pair(0.1, false), std::pair(0.0, true)}) {
         QueryLimits limits;
         limits.store_within = within;
         stored = all;
-        Proximity({0.4, 0}).query_rows(x, rows, boundary, stored, StepEnd::start, limits);
+        if (all_rows)
+            Proximity({0.4, 0}).query(x, boundary, stored, StepEnd::start, limits);
+        else
+            Proximity({0.4, 0}).query_rows(x, rows, boundary, stored, StepEnd::start, limits);
         EXPECT_EQ(stored.clearance, all.clearance);
         int kept = 0;
         for (const int i : rows) {
@@ -167,8 +175,7 @@ TEST(Limbs, WhatWasAskedBeforeChangesNoAnswer) {
         const Boundary boundary = boundary_of({sliced(mesh, 5)});
         Points x = random_points(random, 500, 1.3);
         for (int i = 0; i < 100; ++i) x.row(i) = 1.1 * mesh.vertices.row(i);  // nearest to vertices
-        std::vector<int> rows(500);
-        std::iota(rows.begin(), rows.end(), 0);
+        const std::vector<int> rows = numbers_up_to(500);
         Proximity asked({0.6, 0});
         SurfaceContacts all, contacts;
         asked.query(x, boundary, all);
@@ -274,8 +281,7 @@ TEST(Limbs, CoverCanBeLookedAtWhereThePointsAreCarriedTo) {
         body.x1.row(i) += Eigen::RowVector3d(0.05, -0.1, 0.02);
     Boundary there = moving;
     there.obstacles[0].x0 = body.x1;
-    std::vector<int> rows(size_t(balls.x.rows()));
-    std::iota(rows.begin(), rows.end(), 0);
+    const std::vector<int> rows = numbers_up_to(int(balls.x.rows()));
     const std::vector<LimbSet> ignored(rows.size(), 0);
     Proximity proximity, other;
     SurfaceContacts contacts, carried;
